@@ -136,12 +136,13 @@ class Settings(BaseSettings):
     @field_validator("public_url")
     @classmethod
     def address_of_the_page(cls, url: str | None) -> str | None:
-        """What a link can be made of by adding to it; "" is None."""
+        """What a link can be made of by adding to it, without the port that goes without saying; "" is None."""
         if not url:
             return None
         parts = urlsplit(url)
         if parts.scheme in {"http", "https"} and parts.hostname and not (parts.query or parts.fragment or "@" in url):
-            return url.rstrip("/")
+            usual = ":443" if parts.scheme == "https" else ":80"
+            return parts._replace(netloc=parts.netloc.removesuffix(usual)).geturl().rstrip("/")
         raise ValueError("the page's public address must begin with https:// and name a host, and nothing behind it")
 
     @field_validator("oidc_issuer")

@@ -44,5 +44,6 @@ if [ -n "$link" ] && [ "$mode" != people ]; then # the log still names a link th
         'import sys, segno; segno.make(sys.argv[1], error="l", micro=False).terminal(border=2, compact=True)' "$link"
     echo "$link"
 else
-    echo "It is up at https://$(sed -n 's/^ADDRESS=//p' .env): whoever uses it signs in."
+    page=$(docker compose exec -T server printenv CROSSFIX_PUBLIC_URL | sed 's|:443$||')
+    echo "It is up at $page: whoever uses it signs in."
 fi

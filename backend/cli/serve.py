@@ -110,8 +110,9 @@ async def _serve(settings: Settings, json_: bool) -> None:
             shown = {"url": running.url, "vehicle": what, "database": settings.shown_database, "people": access.mode}
             print_json(shown if code is None else {**shown, "first_admin_code": code})
         else:
-            typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
-            typer.echo(who_may_enter(access.mode, settings.public_url or running.url.rstrip("/"), code), err=False)
+            page = settings.public_url or running.url.rstrip("/")
+            typer.echo(f"Crossfix flies {what}. The page: {page}/", err=False)
+            typer.echo(who_may_enter(access.mode, page, code), err=False)
         if settings.plain_http and settings.reachable_from_outside:
             remark("CROSSFIX_PLAIN_HTTP: passwords cross the network as they are; it has to encrypt by itself.")
         await running.gone

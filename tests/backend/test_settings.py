@@ -69,6 +69,9 @@ def test_an_address_that_no_link_can_be_made_of_is_refused(url: str) -> None:
 def test_the_pages_address_is_one_to_add_to() -> None:
     assert Settings(public_url="https://192.168.1.10:8443/").public_url == "https://192.168.1.10:8443"
     assert Settings(public_url="").public_url is None
+    assert Settings(public_url="https://192.168.1.10:443").public_url == "https://192.168.1.10", "as compose sets it"
+    assert Settings(public_url="http://field:80/").public_url == "http://field"
+    assert Settings(public_url="http://field:443").public_url == "http://field:443"
 
 
 async def test_a_link_to_the_pages_address_is_not_turned_away(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ case "$*" in
     *" logs "*) cat "$SAID/log" ;;
     inspect*) echo 2026-11-23T18:00:00Z ;;
     *"/api/session"*) cat "$SAID/mode" ;;
+    *"printenv CROSSFIX_PUBLIC_URL") cat "$SAID/page" ;;
     *" exec "*) echo "QR of $(eval echo \\"\\${$#}\\")" ;;
 esac
 """
@@ -35,9 +36,12 @@ def team(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def brought_up(team: Path, log: str, *arguments: str, mode: str = "waiting") -> subprocess.CompletedProcess[str]:
+def brought_up(
+    team: Path, log: str, *arguments: str, mode: str = "waiting", page: str = "https://box.local:443"
+) -> subprocess.CompletedProcess[str]:
     (team / "log").write_text(log)
     (team / "mode").write_text(mode)
+    (team / "page").write_text(f"{page}\n")
     surroundings = {**os.environ, "PATH": f"{team}:{os.environ['PATH']}", "SAID": str(team)}
     command = [str(team / "deploy" / "for-a-team.sh"), *arguments]
     return subprocess.run(command, env=surroundings, capture_output=True, text=True, timeout=60, check=False)
@@ -59,6 +63,12 @@ def test_with_people_there_it_says_where_they_sign_in_and_keeps_the_settings(tea
     done = brought_up(team, who_may_enter("people", "https://box.local:443", None))
     assert done.stdout.splitlines()[-1] == "It is up at https://box.local: whoever uses it signs in."
     assert "VEHICLE_URL" in (team / ".env").read_text()
+
+
+def test_where_they_sign_in_is_said_with_the_port_that_was_set(team: Path) -> None:
+    (team / ".env").write_text("HTTPS_PORT=8443\nCOMPOSE_PROFILES=simulated\n")
+    done = brought_up(team, who_may_enter("people", "https://localhost:8443", None), page="https://localhost:8443")
+    assert done.stdout.splitlines()[-1] == "It is up at https://localhost:8443: whoever uses it signs in."
 
 
 def test_an_address_beside_settings_that_are_there_is_refused_before_anything_starts(team: Path) -> None:
