@@ -39,6 +39,17 @@ def test_nothing_runs_as_root_or_writes_where_it_should_not():
     assert SERVICES["secrets"]["network_mode"] == "none"
 
 
+def test_what_is_brought_down_leaves_no_volume_without_a_name():
+    """Docker makes one wherever nothing is mounted at a `VOLUME` of the image, and `down` keeps it."""
+    place = re.search(r"^VOLUME (\S+)$", (DEPLOY.parent / "Dockerfile").read_text(), re.MULTILINE)
+    assert place is not None
+    ours = {name: service for name, service in SERVICES.items() if service["image"] == "crossfix"}
+    assert {"server", "vehicle", "secrets"} <= set(ours)
+    for name, service in ours.items():
+        mounted = [*service["tmpfs"], *(volume.split(":")[1] for volume in service.get("volumes", []))]
+        assert place[1] in mounted, name
+
+
 def test_the_server_is_never_given_the_address_that_the_proxy_needs():
     """Docker gives the lowest one that is free, and the server is up before the proxy."""
     web = COMPOSE["networks"]["web"]["ipam"]["config"][0]
