@@ -33,7 +33,7 @@ Worker.prototype.postMessage = function (message, ...rest) {
 
 
 def drawn(screen: Screen, bearings: int) -> list[tuple[str, float, float]]:
-    """Number, lon and lat of each place on the map, as soon as there are so many."""
+    """Number, lon and lat of each place on the map, once there are as many as bearings."""
     screen.page.wait_for_function("(wanted) => placesOnMap.length === wanted", arg=bearings, timeout=60_000)
     return [(label, lon, lat) for label, lon, lat in screen.evaluate("placesOnMap")]
 
