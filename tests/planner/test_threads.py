@@ -19,7 +19,14 @@ importlib.import_module(sys.argv[1])
 
 
 @pytest.mark.parametrize(
-    "first", ["backend.cli.localize", "hardware.direction_finding.estimate", "planner.belief.grid"]
+    "first",
+    [
+        "backend.cli.localize",
+        "hardware.direction_finding.estimate",
+        "planner.belief.grid",
+        "tests.benchmarks.field_world",
+        "tests.benchmarks.sensor_world",
+    ],
 )
 def test_the_number_of_threads_is_set_before_numpy_is_loaded(first: str) -> None:
     clean = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
