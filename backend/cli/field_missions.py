@@ -7,19 +7,19 @@ does not cover is waited for. Mission k has the same world in every row, and its
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from shapely import Point, Polygon
 
 from backend.api.suggestion import suggested_mission
+from backend.cli.field_gyration import GYRATION, circling, heard_circling
 from backend.cli.field_legs import Listens, flown, listened
 from backend.cli.field_rivals import RIVALS
-from backend.events import BearingMeasured, CraftSource, HeardOnTheWay
+from backend.events import BearingMeasured, BeliefUpdated, CraftSource, HeardOnTheWay
 from backend.search.localization import Localization, localization
 from backend.search.planning import decide, foreseen
 from backend.search.sector import (
@@ -35,7 +35,7 @@ from backend.search.sector import (
 )
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.search.swings import swing_plan
-from backend.simulation.field_world import Field, antenna_pattern, drawn_field
+from backend.simulation.field_world import Antenna, Field, antenna_pattern, drawn_field
 from backend.spec import MissionSpec, PlannerSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
@@ -46,7 +46,6 @@ from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
 from planner.geometry import bounds
 from planner.motion import flight_time, turn_between
-from planner.study.truth import wilson
 from planner.types import FullMotion
 
 HOME = Place(50.6234, 7.2046)
@@ -57,22 +56,31 @@ HOVER_W = 250.0
 FAR_M = 50.0
 """Bearings from nearer do not count in the statistics of bearings, as in the thesis' (6.3.2)."""
 OUTLIER_DEG = 30.0
+LATE_S = 400.0
+"""Who has not said localized by then is not waited for when it never stops."""
 LOOK_S = 1.0
 """To brake, look, and turn on, when a sector was not enough."""
 
 Turns = Literal["whole", "sector"]
+Errors = Literal["joint", "independent"]
 
 
 @dataclass(frozen=True, slots=True)
 class FieldOptions:
     """turns: once around at every place, or as far as needed. turn_rate_deg_s: of a sweep. compass_sd_deg: of the
-    flights' heading errors. listens: where."""
+    flights' heading errors; compass_deg: their heading error, to either side, instead. listens: where. antenna: that is
+    flown. errors: of bearings, as the specification has them. heading_sigma_deg: what the craft states of its heading.
+    """
 
     planner: str = "crossfix"
     turns: Turns = "whole"
     listens: Listens = "places"
     turn_rate_deg_s: float = 30.0
     compass_sd_deg: float = 4.0
+    compass_deg: float | None = None
+    antenna: Antenna = "yagi"
+    errors: Errors = "joint"
+    heading_sigma_deg: float = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,15 +106,15 @@ class FieldMission:
 
 OURS = ("crossfix", "rollout")
 """The suggested mission's planner, and the specification's default: rollouts on the Fisher policy."""
-PLANNERS = (*OURS, *RIVALS)
+PLANNERS = (*OURS, *RIVALS, GYRATION)
 
 
 def mission_of(options: FieldOptions) -> MissionSpec:
-    """The suggested mission with a joint belief; all planners measure and claim alike."""
+    """The suggested mission; all planners measure and claim alike."""
     spec = suggested_mission(HOME)
     sensor = spec.sensor.model_copy(
         update={
-            "bearing_errors": "joint",
+            "bearing_errors": options.errors,
             "measurement_time_s": 360.0 / options.turn_rate_deg_s + SETTLE_S,
             "turn_rate_deg_s": options.turn_rate_deg_s,
             "sector_turns": options.turns == "sector",
@@ -129,16 +137,24 @@ class FieldStudy:
     finder: SparseDirectionFinder
 
     @classmethod
-    def of(cls, options: FieldOptions, heading_sigma_deg: float) -> FieldStudy:
-        """heading_sigma_deg: what the craft states of its heading."""
+    def of(cls, options: FieldOptions) -> FieldStudy:
+        """What all missions of the row have in common."""
         spec = mission_of(options)
-        finder = SparseDirectionFinder(heading_sigma_deg=heading_sigma_deg)
-        return cls(options, spec, localization(spec, HOME), antenna_pattern(), finder)
+        finder = SparseDirectionFinder(heading_sigma_deg=options.heading_sigma_deg)
+        return cls(options, spec, localization(spec, HOME), antenna_pattern(options.antenna), finder)
+
+    def field(self, seed: int) -> Field:
+        """Where mission `seed` is flown."""
+        options, area = self.options, bounds(self.task.problem.area)
+        return drawn_field(seed, self.task.frame, area, options.compass_sd_deg, options.compass_deg, options.antenna)
 
     def fly(self, seed: int) -> FieldMission:
         """One mission, until it says localized or has taken its last bearing."""
-        task, rate = self.task, self.options.turn_rate_deg_s
-        field = drawn_field(seed, task.frame, bounds(task.problem.area), self.options.compass_sd_deg)
+        return self._gyrated(seed) if self.options.planner == GYRATION else self._stopping(seed)
+
+    def _stopping(self, seed: int) -> FieldMission:
+        """Turns are made at places."""
+        task, rate, field = self.task, self.options.turn_rate_deg_s, self.field(seed)
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
         measured, legs = list[BearingMeasured](), list[HeardOnTheWay]()
         here, heading, time_s = (0.0, 0.0), 0.0, 0.0
@@ -153,7 +169,7 @@ class FieldStudy:
                 direction = float(np.arctan2(way[1], way[0]))
                 time_s += float(flight_time(motion, length, turn_between(heading, direction)))
                 swinging = self._swinging(task, belief, measured, here, place)
-                # the yaw for a sector is laid on the way, unless the nose has other things to do there
+                # the yaw for a sector is laid on the way; a nose that swings there has only the end of it
                 flown_s = float(flight_time(motion, length)) if swinging is None else 0.0
                 if self.options.listens != "places":
                     nose = flown(here, place, heading, swinging)
@@ -183,18 +199,50 @@ class FieldStudy:
                     break
                 retakes += 1
             fact, belief = task.belief_fact(measured)
+        return self._ended(field, fact, belief, measured, time_s, retakes, turned_deg + way_deg)
+
+    def _gyrated(self, seed: int) -> FieldMission:
+        """The nose goes round all the time, and the craft flies on meanwhile."""
+        field, task, rng = self.field(seed), self.task, np.random.default_rng([seed, 3])
+        measured, circles, nose_deg = list[BearingMeasured](), 0, 0.0
+        here, time_s, circle_s = (0.0, 0.0), 0.0, 360.0 / self.options.turn_rate_deg_s
+        fact, belief = task.belief_fact(measured)
+        while not fact.localized and time_s < LATE_S:
+            way = circling(here, self._choose(task, belief, measured, here, rng), nose_deg, circle_s)
+            sweep, reading = heard_circling(field, way, circles, self.finder, self.pattern)
+            here, nose_deg = (float(way.x[-1]), float(way.y[-1])), float(way.nose_deg[-1])
+            time_s += circle_s
+            circles += 1
+            source = CraftSource(craft_id="craft-1")
+            taken = Taken(self.task.emitter_id, source, f"sweep-{circles}", circles, 1)
+            found = sweep_fact(taken, self.spec.sensor, sweep, reading, circle_s)
+            if isinstance(found, BearingMeasured):
+                measured.append(found)
+                fact, belief = task.belief_fact(measured)
+        return self._ended(field, fact, belief, measured, time_s, circles - len(measured), 360.0 * circles)
+
+    def _ended(
+        self,
+        field: Field,
+        fact: BeliefUpdated,
+        belief: GridBelief,
+        measured: Sequence[BearingMeasured],
+        time_s: float,
+        rejected: int,
+        turned_deg: float,
+    ) -> FieldMission:
         estimate = fact.estimate
-        x, y = (math.nan, math.nan) if estimate is None else task.frame.to_enu(Place(estimate.lat, estimate.lon))
+        place = None if estimate is None else self.task.frame.to_enu(Place(estimate.lat, estimate.lon))
         return FieldMission(
-            seed=seed,
+            seed=field.seed,
             localized=fact.localized,
             time_s=time_s,
             in_c95=bool(Polygon(confidence_region(belief)).covers(Point(field.truth))),
-            error_m=math.dist((x, y), field.truth),
+            error_m=math.nan if place is None else math.dist(place, field.truth),
             stated_m=math.nan if estimate is None else estimate.expected_rmse_m,
             bearings=len(measured),
-            rejected=retakes,
-            turned_deg=turned_deg + way_deg,
+            rejected=rejected,
+            turned_deg=turned_deg,
             off_deg=tuple(off for b in measured if (off := self._off_deg(field, b)) is not None),
         )
 
@@ -206,7 +254,7 @@ class FieldStudy:
         here: tuple[float, float],
         rng: np.random.Generator,
     ) -> tuple[float, float]:
-        rival = RIVALS.get(self.options.planner)
+        rival = RIVALS.get("fisher" if self.options.planner == GYRATION else self.options.planner)
         if rival is not None:
             return rival(foreseen(task.problem, measured, belief), belief, here, rng)
         decision = decide(task, belief, measured, here)
@@ -223,8 +271,10 @@ class FieldStudy:
         if self.options.listens != "way_swinging":
             return None
         middle = (0.5 * (here[0] + place[0]), 0.5 * (here[1] + place[1]))
-        expected = expected_here(task, belief, measured, middle)
-        plan = swing_plan(expected, self.pattern.offset_to_nose_deg, self.options.turn_rate_deg_s, None)
+        expected, offset_deg = expected_here(task, belief, measured, middle), self.pattern.offset_to_nose_deg
+        begin_deg = self._turn(task, belief, measured, place, 1).begin_deg
+        facing_deg = None if begin_deg is None else (begin_deg - offset_deg) % 360.0
+        plan = swing_plan(expected, offset_deg, self.options.turn_rate_deg_s, facing_deg)
         return Swinging(plan, lambda _: math.inf)
 
     def _turn(
@@ -282,66 +332,3 @@ class FieldStudy:
 def _apart(heading: float, compass_deg: float) -> float:
     """Degrees between a heading (rad ccw from east) and one clockwise from north."""
     return abs(math.remainder(90.0 - math.degrees(heading) - compass_deg, 360.0))
-
-
-@dataclass(frozen=True, slots=True)
-class FieldSummary:
-    """Of all missions of a row; *_ci95: half the 95 % interval. in_c95 and what follows: of those that claimed."""
-
-    options: FieldOptions
-    missions: int
-    localized: float
-    time_s: float
-    time_ci95_s: float
-    time_90_s: float
-    in_c95: float
-    in_c95_low: float
-    in_c95_high: float
-    false_claims: float
-    bearings: float
-    turned_deg: float
-    energy_kj: float
-    bearing_sd_deg: float
-    outliers: int
-    bearings_far: int
-
-    def as_json(self) -> dict[str, Any]:
-        """One flat object; None: no mission told."""
-        fields = dataclasses.asdict(self)
-        options = fields.pop("options")
-        return {name: _rounded(value) for name, value in {**options, **fields}.items()}
-
-
-def summary(options: FieldOptions, flown: Sequence[FieldMission]) -> FieldSummary:
-    """Of at least one mission."""
-    nothing = math.nan
-    claims = [m for m in flown if m.localized]
-    inside = sum(m.in_c95 for m in claims)
-    low, high = wilson(inside, len(claims)) if claims else (nothing, nothing)
-    times = np.array([m.time_s for m in flown])
-    off = np.array([value for m in flown for value in m.off_deg])
-    honest = off[np.abs(off) <= OUTLIER_DEG]
-    return FieldSummary(
-        options=options,
-        missions=len(flown),
-        localized=len(claims) / len(flown),
-        time_s=float(times.mean()),
-        time_ci95_s=float(1.96 * times.std(ddof=1) / math.sqrt(len(times))) if len(times) > 1 else nothing,
-        time_90_s=float(np.quantile(times, 0.9)),
-        in_c95=inside / len(claims) if claims else nothing,
-        in_c95_low=low,
-        in_c95_high=high,
-        false_claims=float(np.mean([m.false_claim for m in claims])) if claims else nothing,
-        bearings=float(np.mean([m.bearings for m in flown])),
-        turned_deg=float(np.mean([m.turned_deg for m in flown])),
-        energy_kj=float(HOVER_W * times.mean() / 1e3),
-        bearing_sd_deg=float(honest.std()) if len(honest) else nothing,
-        outliers=int((np.abs(off) > OUTLIER_DEG).sum()),
-        bearings_far=len(off),
-    )
-
-
-def _rounded(value: Any) -> Any:
-    if not isinstance(value, float):
-        return value
-    return round(value, 4) if math.isfinite(value) else None

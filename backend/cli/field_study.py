@@ -10,12 +10,12 @@ import typer
 
 from backend.cli.edge import print_json, remark
 from backend.cli.field_legs import Listens
-from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, FieldSummary, Turns, summary
+from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, Turns
+from backend.cli.field_summary import FieldSummary, summary
+from backend.simulation.field_world import Antenna
 from planner.study.errors import StudyError
 
 REMARK_EVERY = 20
-HEADING_SIGMA_DEG = 4.0
-"""What the craft states of its heading."""
 COLUMNS = (
     "planner",
     "turns",
@@ -40,30 +40,47 @@ class FieldWays:
     listens: Sequence[str]
 
 
-def field_rows(
-    ways: FieldWays,
-    runs: int,
-    seed: int,
-    turn_rate_deg_s: float,
-    compass_sd_deg: float,
-    json_: bool,
-) -> None:
+@dataclass(frozen=True, slots=True)
+class FieldSetting:
+    """What all rows have in common, as in `FieldOptions`."""
+
+    turn_rate_deg_s: float
+    compass_sd_deg: float
+    compass_deg: float | None
+    antenna: str
+
+
+def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, json_: bool) -> None:
     """Flies and prints the rows. seed: of the first mission. Raises StudyError for what
     cannot be flown."""
-    if not 5.0 <= turn_rate_deg_s <= 90.0:
-        raise StudyError(f"--turn-rate must be 5 to 90 degrees a second, got {turn_rate_deg_s:g}")
-    if not 0.0 <= compass_sd_deg <= 60.0:
-        raise StudyError(f"--compass-sd must be 0 to 60 degrees, got {compass_sd_deg:g}")
+    if not 5.0 <= setting.turn_rate_deg_s <= 90.0:
+        raise StudyError(f"--turn-rate must be 5 to 90 degrees a second, got {setting.turn_rate_deg_s:g}")
+    for option, given_deg in (("sd", setting.compass_sd_deg), ("bias", setting.compass_deg)):
+        if given_deg is not None and not 0.0 <= given_deg <= 60.0:
+            raise StudyError(f"--compass-{option} must be 0 to 60 degrees, got {given_deg:g}")
     for planner in ways.planners:
         if planner not in PLANNERS:
             raise StudyError(f"field-world has no planner {planner!r}: choose one of {', '.join(PLANNERS)}")
-    for option, given, known in (("turns", ways.turns, Turns), ("listens", ways.listens, Listens)):
+    choices = (
+        ("turns", ways.turns, Turns),
+        ("listens", ways.listens, Listens),
+        ("antenna", [setting.antenna], Antenna),
+    )
+    for option, given, known in choices:
         for way in given:
             if way not in get_args(known):
                 raise StudyError(f"--{option} must be one of {', '.join(get_args(known))}, got {way!r}")
     rows = [
         _row(
-            FieldOptions(planner, cast(Turns, turns), cast(Listens, listens), turn_rate_deg_s, compass_sd_deg),
+            FieldOptions(
+                planner,
+                cast(Turns, turns),
+                cast(Listens, listens),
+                setting.turn_rate_deg_s,
+                setting.compass_sd_deg,
+                setting.compass_deg,
+                cast(Antenna, setting.antenna),
+            ),
             runs,
             seed,
         )
@@ -81,7 +98,7 @@ def field_rows(
 
 
 def _row(options: FieldOptions, runs: int, seed: int) -> FieldSummary:
-    study = FieldStudy.of(options, HEADING_SIGMA_DEG)
+    study = FieldStudy.of(options)
     flown: list[FieldMission] = []
     for number in range(seed, seed + runs):
         flown.append(study.fly(number))

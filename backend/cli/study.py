@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from backend.cli.edge import print_json, remark, stop, words_of
-from backend.cli.field_study import FieldWays, field_rows
+from backend.cli.field_study import FieldSetting, FieldWays, field_rows
 from backend.cli.truth import truth
 from planner.options import STUDY
 from planner.study.errors import StudyError
@@ -52,7 +52,7 @@ def run(
         typer.Option(
             help="base, fisher, entpp, entpp8, sopt, vander_hook, tokekar_subset, tokekar_worst_case, tokekar_tree, "
             "lookahead, lookahead_myopic, dynamic_program, rollout, or crossfix: rollouts on the dynamic program. "
-            "field-world: crossfix, rollout, fisher, entpp, entropy_of_nine or random_walk.",
+            "field-world: crossfix, rollout, fisher, entpp, entropy_of_nine, random_walk or gyration.",
         ),
     ] = None,
     selection: Annotated[
@@ -98,6 +98,10 @@ def run(
     compass_sd: Annotated[
         float, typer.Option(help="field-world: standard deviation of the flights' compass errors, degrees.")
     ] = 4.0,
+    compass_bias: Annotated[
+        float | None, typer.Option(help="field-world: the compass' error instead, degrees to either side.")
+    ] = None,
+    antenna: Annotated[str, typer.Option(help="field-world: yagi, or wide: a beam of 86 degrees, not 68.")] = "yagi",
     results: Directory = DEFAULT_DIRECTORY,
     json_: Annotated[
         bool, typer.Option("--json", help="Print one JSON object; a list of them when several cells were asked for.")
@@ -109,7 +113,9 @@ def run(
     """
     if scenario is not None and FIELD_WORLD in scenario:
         try:
-            _field_world(scenario, planner, turns, listens, runs, seed, turn_rate, compass_sd, json_)
+            ways = FieldWays(planner or ["crossfix"], turns or ["whole"], listens or ["places"])
+            setting = FieldSetting(turn_rate, compass_sd, compass_bias, antenna)
+            _field_world(scenario, ways, setting, runs, seed, json_)
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)
         return
@@ -181,23 +187,14 @@ app.command()(truth)
 
 
 def _field_world(
-    scenario: list[str],
-    planner: list[str] | None,
-    turns: list[str] | None,
-    listens: list[str] | None,
-    runs: int,
-    seed: list[int] | None,
-    turn_rate: float,
-    compass_sd: float,
-    json_: bool,
+    scenario: list[str], ways: FieldWays, setting: FieldSetting, runs: int, seed: list[int] | None, json_: bool
 ) -> None:
     seeds = seed or [1]
     if len(scenario) > 1 or len(seeds) > 1:
         raise StudyError("field-world is flown by itself, from one --seed on: give --scenario and --seed once")
     if runs < 1 or seeds[0] < 0:
         raise StudyError(f"--runs must be 1 or more and --seed 0 or more, got {runs} and {seeds[0]}")
-    ways = FieldWays(planner or ["crossfix"], turns or ["whole"], listens or ["places"])
-    field_rows(ways, runs, seeds[0], turn_rate, compass_sd, json_)
+    field_rows(ways, setting, runs, seeds[0], json_)
 
 
 def _refuse(error: object, json_: bool) -> NoReturn:

@@ -3,25 +3,30 @@
 A mission has an emitter anywhere in the suggested area, a compass that is wrong by one angle, an antenna on an airframe
 (hardware.sim.antenna), one or two reflectors that lose 4 to 10 dB, fading in time (Rician), and shadowing: the direct
 wave and every echo are weakened or strengthened with a standard deviation of 5 dB, each by a random field of its own
-that changes over 20 m.
+that changes over 20 m. In flight the craft leans, so that its antenna looks up or down, and its heading and place are
+told LATE_S after they were so.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.frame import LocalFrame
-from hardware.readings import HeadingSample, PowerSample, Sweep
+from hardware.readings import HeadingSample, Place, PowerSample, Sweep
+from hardware.sim.antenna import YagiOnAirframe
 from hardware.sim.propagation import Fading
 from hardware.sim.turn import turn_once
-from hardware.sim.turntable import simulated_antenna
-from hardware.sim.world import Emitter, Pose, RadioLink, Reflector, World
+from hardware.sim.turntable import OWN_POINTING_SIGMA_DEG, measure_pattern, simulated_antenna
+from hardware.sim.world import Emitter, Lean, Pose, RadioLink, Reflector, World
 
 FREQUENCY_HZ = 868_300_000.0
 HEIGHT_M = 40.0
@@ -36,6 +41,13 @@ SHADOW_DB, SHADOW_M = 5.0, 20.0
 WAVES = 64
 REPORTED_M = 0.1
 """By how much reported places jitter, standard deviation."""
+LATE_S = 0.05
+"""Of reported headings and places in flight: what clocks and filters leave, some degrees while the nose swings."""
+
+Antenna = Literal["yagi", "wide"]
+WIDE = YagiOnAirframe(element_forward=(-0.2, 0.0, 0.2), element_current=YagiOnAirframe().element_current[:3])
+"""Without its foremost director: a beam of 86 degrees instead of 68."""
+ANTENNAS: Mapping[Antenna, YagiOnAirframe] = {"yagi": YagiOnAirframe(), "wide": WIDE}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +72,27 @@ class Shadow:
 
 
 @dataclass(frozen=True, slots=True)
+class Way:
+    """Points at even times. x, y: (n,) m ENU. nose_deg: (n,) clockwise from north, continuous. lean: (n, 2) rad, as of
+    `Pose`."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    nose_deg: NDArray[np.float64]
+    lean: NDArray[np.float64]
+
+    @property
+    def heading(self) -> float:
+        """Of the nose at its end, rad ccw from east."""
+        return math.radians(90.0 - float(self.nose_deg[-1]))
+
+    @property
+    def turned_deg(self) -> float:
+        """Either way."""
+        return float(np.abs(np.diff(self.nose_deg)).sum())
+
+
+@dataclass(frozen=True, slots=True)
 class Field:
     """One mission's world. truth: m ENU. shadows: of the direct wave, then of each reflector's."""
 
@@ -79,23 +112,22 @@ class Field:
         begin_deg = any_deg if start_deg is None else start_deg
         return turn_once(link, place, HEIGHT_M, start_deg=begin_deg, rate_deg_s=rate_deg_s)
 
-    def along(
-        self, x: NDArray[np.float64], y: NDArray[np.float64], heading_deg: NDArray[np.float64], rate_hz: float, leg: int
-    ) -> tuple[list[PowerSample], list[HeadingSample]]:
-        """What a craft hears and reports at (n,) places, m ENU, and headings of its nose, `rate_hz` a second. Chance
-        depends on the seed and the number of the leg alone."""
+    def along(self, way: Way, rate_hz: float, leg: int) -> tuple[list[PowerSample], list[HeadingSample]]:
+        """What a craft hears and reports on its way, `rate_hz` points a second. Chance depends on the seed and the
+        number of the leg alone."""
         rng = np.random.default_rng([self.seed, leg, 4])
         link = RadioLink(dataclasses.replace(self.world, seed=int(rng.integers(2**31))), FREQUENCY_HZ)
         samples: list[PowerSample] = []
         headings: list[HeadingSample] = []
-        for k, (east, north, nose) in enumerate(zip(x, y, heading_deg, strict=True)):
+        for k, (east, north, nose) in enumerate(zip(way.x, way.y, way.nose_deg, strict=True)):
             at_s, place = k / rate_hz, self.frame.to_geo(float(east), float(north))
             link.world = self._at(float(east), float(north))
-            power_dbm, clipped = link.power_dbm(at_s, Pose(place, HEIGHT_M, float(nose)))
+            lean: Lean = (float(way.lean[k, 0]), float(way.lean[k, 1]))
+            power_dbm, clipped = link.power_dbm(at_s, Pose(place, HEIGHT_M, float(nose), lean))
             samples.append(PowerSample(at_s, FREQUENCY_HZ, power_dbm, link.world.front_end.noise_dbm, clipped))
             off = REPORTED_M * rng.standard_normal(2)
             told = self.frame.to_geo(float(east + off[0]), float(north + off[1]))
-            headings.append(HeadingSample(at_s, float(nose) % 360.0, told))
+            headings.append(HeadingSample(at_s + LATE_S, float(nose) % 360.0, told))
         return samples, headings
 
     def _at(self, x: float, y: float) -> World:
@@ -109,13 +141,25 @@ class Field:
         return dataclasses.replace(self.world, emitters=(emitter,), reflectors=reflectors)
 
 
-def antenna_pattern() -> AntennaPattern:
+@functools.cache
+def antenna_pattern(antenna: Antenna = "yagi") -> AntennaPattern:
     """Of the antenna that is flown, as it was measured: what a direction finder works with."""
-    return simulated_antenna()
+    if antenna == "yagi":
+        return simulated_antenna()
+    hall = World((Emitter(Place(0.0, 0.0), FREQUENCY_HZ),), antenna=ANTENNAS[antenna])
+    return dataclasses.replace(measure_pattern(hall), pointing_sigma_deg=OWN_POINTING_SIGMA_DEG)
 
 
-def drawn_field(seed: int, frame: LocalFrame, area: tuple[float, float, float, float], compass_sd_deg: float) -> Field:
-    """area: x_min, y_min, x_max, y_max, m ENU. compass_sd_deg: of the flights' heading errors."""
+def drawn_field(
+    seed: int,
+    frame: LocalFrame,
+    area: tuple[float, float, float, float],
+    compass_sd_deg: float,
+    compass_deg: float | None = None,
+    antenna: Antenna = "yagi",
+) -> Field:
+    """area: x_min, y_min, x_max, y_max, m ENU. compass_sd_deg: of the flights' heading errors; compass_deg: their
+    error, to either side, instead. Whatever the compass and the antenna, a seed has the same waves."""
     rng = np.random.default_rng([seed, 1])
     x_min, y_min, x_max, y_max = area
     truth = (
@@ -133,10 +177,12 @@ def drawn_field(seed: int, frame: LocalFrame, area: tuple[float, float, float, f
         )
         for _ in range(int(rng.integers(REFLECTORS[0], REFLECTORS[1] + 1)))
     )
+    off = float(rng.standard_normal())
     world = World(
         (Emitter(frame.to_geo(*truth), FREQUENCY_HZ),),
         fading=SCATTERED,
         reflectors=reflectors,
-        heading_error_deg=float(compass_sd_deg * rng.standard_normal()),
+        antenna=ANTENNAS[antenna],
+        heading_error_deg=compass_sd_deg * off if compass_deg is None else math.copysign(compass_deg, off),
     )
     return Field(world, frame, truth, tuple(Shadow.drawn(rng) for _ in range(1 + len(reflectors))), seed)

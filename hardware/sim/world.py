@@ -82,6 +82,12 @@ class FrontEnd:
         return THERMAL_NOISE_DBM_HZ + 10.0 * math.log10(self.bandwidth_hz) + self.noise_figure_db
 
 
+Lean = tuple[float, float]
+"""rad, by how much the vehicle's upright axis leans to the east and to the north."""
+UPRIGHT: Lean = (0.0, 0.0)
+"""As a vehicle that hovers in calm air."""
+
+
 @dataclass(frozen=True, slots=True)
 class Pose:
     """The vehicle in the world. heading_deg: what the vehicle reports for its nose; height above the (flat) ground."""
@@ -89,6 +95,16 @@ class Pose:
     place: Place
     height_m: float
     heading_deg: float
+    lean: Lean = UPRIGHT
+
+
+def as_leaning(east: float, north: float, up: float, lean: Lean) -> tuple[float, float, float]:
+    """A direction as a vehicle has it whose upright axis leans: what lies where it leans to stands higher for it."""
+    angle = math.hypot(*lean)
+    to_east, to_north = lean[0] / angle, lean[1] / angle
+    along, across = east * to_east + north * to_north, north * to_east - east * to_north
+    along, up = along * math.cos(angle) - up * math.sin(angle), along * math.sin(angle) + up * math.cos(angle)
+    return along * to_east - across * to_north, along * to_north + across * to_east, up
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,10 +136,12 @@ class World:
 
     def received_field(self, emitter: Emitter, pose: Pose) -> complex:
         """Complex amplitude at the antenna's terminals without fading and noise; |.|^2 in milliwatt."""
-        return complex(self.received_fields(emitter, pose.place, pose.height_m, np.array([pose.heading_deg]))[0])
+        return complex(
+            self.received_fields(emitter, pose.place, pose.height_m, np.array([pose.heading_deg]), pose.lean)[0]
+        )
 
     def received_fields(
-        self, emitter: Emitter, place: Place, height_m: float, heading_deg: NDArray[np.float64]
+        self, emitter: Emitter, place: Place, height_m: float, heading_deg: NDArray[np.float64], lean: Lean = UPRIGHT
     ) -> NDArray[np.complex128]:
         """(n,) the same for a vehicle that turns on one place: (n,) reported headings."""
         frame = LocalFrame(place)
@@ -131,18 +149,20 @@ class World:
         up = emitter.height_m - height_m
         wavelength = SPEED_OF_LIGHT_M_S / emitter.frequency_hz
         direct = two_ray_gain(math.hypot(east, north), emitter.height_m, height_m, wavelength, self.ground_reflection)
-        total = direct * self._antenna_fields(east, north, up, heading_deg)
+        total = direct * self._antenna_fields(east, north, up, heading_deg, lean)
         for reflector in self.reflectors:
             wall_east, wall_north = frame.to_enu(reflector.place)
             path = math.hypot(wall_east - east, wall_north - north) + math.hypot(wall_east, wall_north)
             reflected = two_ray_gain(path, emitter.height_m, height_m, wavelength, self.ground_reflection)
             reflected *= 10.0 ** (-reflector.loss_db / 20.0) * np.exp(1j * reflector.phase_rad)
-            total = total + reflected * self._antenna_fields(wall_east, wall_north, up, heading_deg)
+            total = total + reflected * self._antenna_fields(wall_east, wall_north, up, heading_deg, lean)
         return total * 10.0 ** ((emitter.power_dbm - emitter.polarization_loss_db) / 20.0)
 
     def _antenna_fields(
-        self, east: float, north: float, up: float, heading_deg: NDArray[np.float64]
+        self, east: float, north: float, up: float, heading_deg: NDArray[np.float64], lean: Lean
     ) -> NDArray[np.complex128]:
+        if lean != UPRIGHT:
+            east, north, up = as_leaning(east, north, up, lean)
         bearing = math.degrees(math.atan2(east, north))
         front = heading_deg + self.heading_error_deg + self.antenna_offset_deg
         elevation = math.atan2(up, max(math.hypot(east, north), 0.1))
@@ -165,10 +185,15 @@ class RadioLink:
     def amplitude(self, at_s: float, pose: Pose) -> complex:
         """Faded complex amplitude at the antenna's terminals (sqrt mW); 0 without an emitter or between pulses."""
         heading = np.array([pose.heading_deg])
-        return complex(self.amplitudes(np.array([at_s]), pose.place, pose.height_m, heading)[0])
+        return complex(self.amplitudes(np.array([at_s]), pose.place, pose.height_m, heading, pose.lean)[0])
 
     def amplitudes(
-        self, at_s: NDArray[np.float64], place: Place, height_m: float, heading_deg: NDArray[np.float64]
+        self,
+        at_s: NDArray[np.float64],
+        place: Place,
+        height_m: float,
+        heading_deg: NDArray[np.float64],
+        lean: Lean = UPRIGHT,
     ) -> NDArray[np.complex128]:
         """(n,) the same at (n,) times and headings of a vehicle that turns on one place."""
         emitter = self.world.emitter_at(self.frequency_hz)
@@ -176,7 +201,7 @@ class RadioLink:
             return np.zeros(at_s.size, dtype=np.complex128)
         fading = np.array([self._fading.gain(float(t)) for t in at_s])
         middle = emitter.at(float(at_s.mean())) if at_s.size else emitter
-        received = self.world.received_fields(middle, place, height_m, heading_deg) * fading
+        received = self.world.received_fields(middle, place, height_m, heading_deg, lean) * fading
         if emitter.pulse_period_s is None:
             return received
         return np.where(at_s % emitter.pulse_period_s < emitter.pulse_width_s, received, 0.0)
@@ -184,15 +209,20 @@ class RadioLink:
     def power_dbm(self, at_s: float, pose: Pose) -> tuple[float, bool]:
         """(power reading dBm, clipped)."""
         heading = np.array([pose.heading_deg])
-        reading, clipped = self.powers_dbm(np.array([at_s]), pose.place, pose.height_m, heading)
+        reading, clipped = self.powers_dbm(np.array([at_s]), pose.place, pose.height_m, heading, pose.lean)
         return float(reading[0]), bool(clipped[0])
 
     def powers_dbm(
-        self, at_s: NDArray[np.float64], place: Place, height_m: float, heading_deg: NDArray[np.float64]
+        self,
+        at_s: NDArray[np.float64],
+        place: Place,
+        height_m: float,
+        heading_deg: NDArray[np.float64],
+        lean: Lean = UPRIGHT,
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) readings in dBm and whether each clipped: mean of |signal + noise|^2 over `averages` draws, jittered."""
         front_end = self.world.front_end
-        signal_mw = np.abs(self.amplitudes(at_s, place, height_m, heading_deg)) ** 2
+        signal_mw = np.abs(self.amplitudes(at_s, place, height_m, heading_deg, lean)) ** 2
         noise_mw = 10.0 ** (front_end.noise_dbm / 10.0)
         # mean of n draws of |s + w|^2: mean S + N, variance (2 S N + N^2) / n
         spread = np.sqrt((2.0 * signal_mw * noise_mw + noise_mw**2) / front_end.averages)

@@ -1,10 +1,12 @@
 """Whole searches in the field world, all rows in the same worlds, mission by mission (figures 24).
 
-    python -m tests.benchmarks.field_world --missions 100 --seed 1 --kept FOLDER
+    python -m tests.benchmarks.field_world --missions 100 --seed 1 --pieces FOLDER
     python -m tests.benchmarks.field_world --missions 2 --rows whole,sector        a short look
+    python -m tests.benchmarks.field_world --missions 40 --compass 0,8 --antennas yagi,wide --pieces FOLDER
 
 Mission k of every row has the same world and the same chance. Each is kept as a line of FOLDER as soon as it was flown,
-so that a study that was broken off tells what it has, in pairs, and goes on from there.
+so that a study that was broken off tells what it has, in pairs, and goes on from there; --told reads what FOLDER has
+and flies nothing.
 """
 
 from __future__ import annotations
@@ -14,13 +16,16 @@ import json
 import math
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, replace
+from itertools import product
 from pathlib import Path
+from typing import cast, get_args
 
 import numpy as np
 
-from backend.cli.field_missions import FieldMission, FieldOptions, FieldStudy, summary
-from backend.cli.field_study import HEADING_SIGMA_DEG
+from backend.cli.field_missions import FieldMission, FieldOptions, FieldStudy
+from backend.cli.field_summary import summary
+from backend.simulation.field_world import Antenna
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table
@@ -30,20 +35,29 @@ ROWS: Mapping[str, FieldOptions] = {
     "whole": FieldOptions(),
     "sector": FieldOptions(turns="sector"),
     "swings": FieldOptions(turns="sector", listens="way_swinging"),
+    "wedge": FieldOptions(errors="independent"),
+    "wedge_wide": FieldOptions(errors="independent", heading_sigma_deg=8.0),
     "fisher": FieldOptions("fisher"),
     "entpp": FieldOptions("entpp"),
     "entropy_of_nine": FieldOptions("entropy_of_nine"),
     "random_walk": FieldOptions("random_walk"),
+    "gyration": FieldOptions("gyration"),
 }
-"""The first is what the others are compared with."""
+"""wedge: each bearing by itself, as before errors were estimated with the place; wide: by as much more as makes it hold
+the truth as often as `sector`."""
 AGAINST = "whole"
+EQUAL = "wedge_wide"
 JUDGED = {"sector": "adaptive_turns", "swings": "listening"}
+"""What is wanted of rows is said against EQUAL."""
 LATE_S = 400.0
 COLUMNS = (
+    Column(name="compass off, degrees"),
+    Column(name="antenna"),
     Column(name="row"),
     Column(name="missions"),
     Column(name="time, s", decimals=0),
     Column(name=f"longer than {AGAINST}, s", decimals=0),
+    Column(name=f"longer than {EQUAL}, s", decimals=0),
     Column(name="90 %, s", decimals=0),
     Column(name=f"localized in {LATE_S:.0f} s, %", decimals=0),
     Column(name="truth in C95 at the claim, %", decimals=0),
@@ -55,33 +69,68 @@ COLUMNS = (
 )
 
 
-def flown(names: Sequence[str], seeds: range, kept: Path | None) -> dict[str, dict[int, FieldMission]]:
-    """By row and seed. kept: folder of what was flown before, and of what is."""
-    found = {name: _kept(kept, name) for name in names}
-    studies = dict[str, FieldStudy]()
-    for seed in seeds:
-        for name in names:
-            if seed not in found[name]:
-                if name not in studies:
-                    studies[name] = FieldStudy.of(ROWS[name], HEADING_SIGMA_DEG)
-                found[name][seed] = studies[name].fly(seed)
-                _keep(kept, name, found[name][seed])
-                print(f"{name} {seed}: {found[name][seed].time_s:.0f} s", file=sys.stderr, flush=True)
-    return {name: {seed: found[name][seed] for seed in seeds} for name in names}
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What a row is flown with. compass_deg: to either side; None: another in each mission, sd 4 degrees."""
+
+    compass_deg: float | None = None
+    antenna: Antenna = "yagi"
+
+    @property
+    def name(self) -> str:
+        """As its missions are kept."""
+        return f"{self.antenna}, {'compass sd 4' if self.compass_deg is None else f'compass {self.compass_deg:g}'}"
+
+    def options(self, row: str) -> FieldOptions:
+        """Of a row flown so."""
+        return replace(ROWS[row], compass_deg=self.compass_deg, antenna=self.antenna)
 
 
-def _kept(folder: Path | None, name: str) -> dict[int, FieldMission]:
-    path = None if folder is None else folder / f"{name}.jsonl"
-    if path is None or not path.exists():
+Flown = Mapping[str, Mapping[int, FieldMission]]
+"""By row and seed, in one setting."""
+
+
+def flown(
+    names: Sequence[str], settings: Sequence[Setting], seeds: range, kept: Path | None, told: bool = False
+) -> dict[Setting, dict[str, dict[int, FieldMission]]]:
+    """kept: folder of what was flown before, and of what is. told: nothing is flown; each setting has the seeds that
+    all of its rows have."""
+    found = {one: {name: _kept(kept, one, name) for name in names} for one in settings}
+    studies = dict[tuple[Setting, str], FieldStudy]()
+    for seed, one, name in product(() if told else seeds, settings, names):
+        missions = found[one][name]
+        if seed in missions:
+            continue
+        if (one, name) not in studies:
+            studies[one, name] = FieldStudy.of(one.options(name))
+        missions[seed] = studies[one, name].fly(seed)
+        _keep(kept, one, name, missions[seed])
+        print(f"{one.name}, {name}, {seed}: {missions[seed].time_s:.0f} s", file=sys.stderr, flush=True)
+    return {one: _common(rows, seeds) for one, rows in found.items()}
+
+
+def _common(rows: Flown, seeds: range) -> dict[str, dict[int, FieldMission]]:
+    """Rows of the seeds that all of those have that have any."""
+    begun = {name: missions for name, missions in rows.items() if any(seed in missions for seed in seeds)}
+    common = [seed for seed in seeds if all(seed in missions for missions in begun.values())]
+    return {name: {seed: missions[seed] for seed in common} for name, missions in begun.items() if common}
+
+
+def _path(folder: Path, setting: Setting, name: str) -> Path:
+    return folder / f"{name}, {setting.name}.jsonl".replace(", ", "-").replace(" ", "_")
+
+
+def _kept(folder: Path | None, setting: Setting, name: str) -> dict[int, FieldMission]:
+    if folder is None or not (path := _path(folder, setting, name)).exists():
         return {}
     told = [json.loads(line) for line in path.read_text().splitlines()]
     return {one["seed"]: FieldMission(**{**one, "off_deg": tuple(one["off_deg"])}) for one in told}
 
 
-def _keep(folder: Path | None, name: str, mission: FieldMission) -> None:
+def _keep(folder: Path | None, setting: Setting, name: str, mission: FieldMission) -> None:
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        with (folder / f"{name}.jsonl").open("a") as file:
+        with _path(folder, setting, name).open("a") as file:
             file.write(json.dumps(asdict(mission)) + "\n")
 
 
@@ -91,17 +140,22 @@ def paired(missions: Mapping[int, FieldMission], against: Mapping[int, FieldMiss
     return float(longer.mean()), float(1.96 * longer.std(ddof=1) / math.sqrt(len(longer)))
 
 
-def row(name: str, found: Mapping[str, Mapping[int, FieldMission]]) -> tuple[Cell, ...]:
+def row(setting: Setting, name: str, found: Flown) -> tuple[Cell, ...]:
     """The cells under `COLUMNS`."""
     missions = list(found[name].values())
-    told = summary(ROWS[name], missions)
+    told = summary(setting.options(name), missions)
     in_time = np.mean([m.localized and m.time_s <= LATE_S for m in missions])
     claimed = not math.isnan(told.in_c95)
     return (
+        "sd 4" if setting.compass_deg is None else f"{setting.compass_deg:g}",
+        setting.antenna,
         name,
         told.missions,
         (told.time_s, told.time_ci95_s),
-        None if name == AGAINST or AGAINST not in found else paired(found[name], found[AGAINST]),
+        *(
+            None if other not in found or other == name else paired(found[name], found[other])
+            for other in (AGAINST, EQUAL)
+        ),
         told.time_90_s,
         float(100.0 * in_time),
         100.0 * told.in_c95 if claimed else None,
@@ -113,18 +167,27 @@ def row(name: str, found: Mapping[str, Mapping[int, FieldMission]]) -> tuple[Cel
     )
 
 
-def figures(found: Mapping[str, Mapping[int, FieldMission]]) -> list[Figure]:
+def figures(settings: Mapping[Setting, Flown]) -> list[Figure]:
     """How far each way of turning is ahead, whatever its coverage: the table says that beside it."""
     made = list[Figure]()
-    for name, missions in found.items():
-        told, note = summary(ROWS[name], list(missions.values())), f"{len(missions)} missions"
-        half = round(told.time_ci95_s, 1)
-        made.append(plain(f"time until the claim, {name}", round(told.time_s), "s", ci95=half, note=note))
-        if name in JUDGED and AGAINST in found:
-            longer, half = paired(missions, found[AGAINST])
-            note = f"{len(missions)} pairs"
-            made.append(wanted(JUDGED[name], round(-longer, 1), ci95=round(half, 1), note=note))
+    for setting, found in settings.items():
+        for name, missions in found.items():
+            told, note = summary(setting.options(name), list(missions.values())), f"{len(missions)} missions"
+            half = round(told.time_ci95_s, 1)
+            of = f"{name}, {setting.name}"
+            made.append(plain(f"time until the claim, {of}", round(told.time_s), "s", ci95=half, note=note))
+            if name in JUDGED and EQUAL in found:
+                longer, half = paired(missions, found[EQUAL])
+                note = f"{len(missions)} pairs"
+                made.append(wanted(JUDGED[name], round(-longer, 1), of=setting.name, ci95=round(half, 1), note=note))
     return made
+
+
+def settings_of(compasses: str, antennas: str) -> list[Setting]:
+    """compasses: degrees or `sd`, antennas: names; each with commas between."""
+    named = [name for name in antennas.split(",") if name in get_args(Antenna)]
+    off = [None if one == "sd" else float(one) for one in compasses.split(",")]
+    return [Setting(compass_deg, cast(Antenna, antenna)) for antenna in named for compass_deg in off]
 
 
 def main() -> None:
@@ -132,12 +195,20 @@ def main() -> None:
     parser.add_argument("--missions", type=int, default=100, help="at least 2")
     parser.add_argument("--seed", type=int, default=1, help="of the first mission")
     parser.add_argument("--rows", default=",".join(ROWS))
-    parser.add_argument("--kept", type=Path, help="folder that keeps each mission, to go on from")
+    parser.add_argument(
+        "--compass", default="sd", help="how far it is off, degrees, or sd: 4 degrees in the mean square"
+    )
+    parser.add_argument("--antennas", default="yagi", help="yagi, wide")
+    parser.add_argument("--pieces", type=Path, help="folder that keeps each mission, to go on from")
+    parser.add_argument("--told", action="store_true", help="fly nothing")
     add_out(parser)
     arguments = parser.parse_args()
     begun = begin(__file__)
-    found = flown(arguments.rows.split(","), range(arguments.seed, arguments.seed + arguments.missions), arguments.kept)
-    table = Table(name="rows", columns=COLUMNS, rows=tuple(row(name, found) for name in found))
+    seeds = range(arguments.seed, arguments.seed + arguments.missions)
+    settings = settings_of(arguments.compass, arguments.antennas)
+    found = flown(arguments.rows.split(","), settings, seeds, arguments.pieces, arguments.told)
+    rows = tuple(row(setting, name, rows) for setting, rows in found.items() for name in rows)
+    table = Table(name="rows", columns=COLUMNS, rows=rows)
     print(markdown(table))
     title = "The field world, in pairs"
     write(arguments.out, "study_field_world", title, begun, figures(found), tables=[table], page="planner-studies.md")

@@ -11,24 +11,40 @@ from field_flights import FLOWN
 from backend.cli.field_missions import FieldMission
 from tests.benchmarks import field_world
 
+SETTING = field_world.Setting()
+
 
 def row(*times: float) -> dict[int, FieldMission]:
     return {seed: replace(FLOWN, seed=seed, time_s=time_s) for seed, time_s in enumerate(times)}
 
 
 def test_rows_are_compared_mission_by_mission() -> None:
-    found = {"whole": row(300.0, 100.0), "sector": row(280.0, 70.0)}
+    found = {"whole": row(300.0, 100.0), "sector": row(280.0, 70.0), "wedge_wide": row(310.0, 120.0)}
     longer, half = field_world.paired(found["sector"], found["whole"])
     assert longer == pytest.approx(-25.0)
     assert half == pytest.approx(1.96 * 5.0)
-    assert dict(zip((c.name for c in field_world.COLUMNS), field_world.row("sector", found), strict=True))[
+    assert dict(zip((c.name for c in field_world.COLUMNS), field_world.row(SETTING, "sector", found), strict=True))[
         "localized in 400 s, %"
     ] == pytest.approx(100.0)
-    judged = [figure for figure in field_world.figures(found) if figure.wanted is not None]
-    assert [(figure.value, figure.met) for figure in judged] == [(25.0, True)]
+    judged = [figure for figure in field_world.figures({SETTING: found}) if figure.wanted is not None]
+    assert [(figure.value, figure.met) for figure in judged] == [(40.0, True)]
 
 
 def test_what_was_kept_is_not_flown_again(tmp_path: Path) -> None:
     for mission in row(200.0, 300.0).values():
-        field_world._keep(tmp_path, "whole", mission)
-    assert field_world.flown(["whole"], range(2), tmp_path) == {"whole": row(200.0, 300.0)}
+        field_world._keep(tmp_path, SETTING, "whole", mission)
+    assert field_world.flown(["whole"], [SETTING], range(2), tmp_path) == {SETTING: {"whole": row(200.0, 300.0)}}
+
+
+def test_a_row_that_was_broken_off_leaves_the_pairs_that_all_have(tmp_path: Path) -> None:
+    for name, missions in (("whole", row(200.0, 300.0, 250.0)), ("sector", row(190.0, 280.0))):
+        for mission in missions.values():
+            field_world._keep(tmp_path, SETTING, name, mission)
+    found = field_world.flown(["whole", "sector", "swings"], [SETTING], range(3), tmp_path, told=True)
+    assert found == {SETTING: {"whole": row(200.0, 300.0), "sector": row(190.0, 280.0)}}
+
+
+def test_settings_are_each_antenna_with_each_compass() -> None:
+    names = [one.name for one in field_world.settings_of("0,sd", "yagi,wide")]
+    assert names == ["yagi, compass 0", "yagi, compass sd 4", "wide, compass 0", "wide, compass sd 4"]
+    assert field_world.Setting(8.0, "wide").options("sector").compass_deg == 8.0

@@ -9,11 +9,14 @@ import pytest
 from field_flights import FLOWN
 from typer.testing import CliRunner
 
-from backend.cli.field_legs import LISTENED_HZ, flown, listened
-from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldOptions, FieldStudy, summary
+from backend.cli.field_gyration import circling, heard_circling
+from backend.cli.field_legs import LISTENED_HZ, NOSE_DEG_S2, flown, listened
+from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldOptions, FieldStudy
+from backend.cli.field_summary import summary
 from backend.cli.main import app
 from backend.search.sector import planned_turn, whole_turn
 from backend.simulation.field_world import drawn_field
+from hardware.sim.propagation import Fading
 from hardware.yaw_swings import Swinging, SwingPlan
 from planner.geometry import bounds
 from planner.motion import flight_time, turn_between
@@ -25,7 +28,7 @@ def run(*arguments):
 
 
 def test_a_mission_is_its_seed():
-    study = FieldStudy.of(FieldOptions("fisher"), 4.0)
+    study = FieldStudy.of(FieldOptions("fisher"))
     first, again, other = study.fly(5), study.fly(5), study.fly(6)
     assert first == again
     assert first.time_s != other.time_s
@@ -33,7 +36,7 @@ def test_a_mission_is_its_seed():
 
 
 def test_a_sector_is_turned_as_far_as_the_machine_says_and_takes_that_long():
-    study = FieldStudy.of(FieldOptions(turns="sector"), 4.0)
+    study = FieldStudy.of(FieldOptions(turns="sector"))
     field = drawn_field(5, study.task.frame, bounds(study.task.problem.area), 0.0)
     east, north = field.truth
     off = (np.arange(360) - math.degrees(math.atan2(east, north)) + 180.0) % 360.0 - 180.0
@@ -52,7 +55,7 @@ def test_a_sector_is_turned_as_far_as_the_machine_says_and_takes_that_long():
 
 
 def test_a_leg_is_flown_as_the_movement_model_has_it_and_only_a_turning_antenna_tells():
-    study = FieldStudy.of(FieldOptions(listens="way_swinging"), 4.0)
+    study = FieldStudy.of(FieldOptions(listens="way_swinging"))
     field = drawn_field(5, study.task.frame, bounds(study.task.problem.area), 4.0)
     here, place = (-100.0, 20.0), (20.0, 80.0)
     for swings in (False, True):
@@ -69,6 +72,35 @@ def test_a_leg_is_flown_as_the_movement_model_has_it_and_only_a_turning_antenna_
         assert told.model_copy(update={"leg_id": again.leg_id}) == again
         assert told.tells is swings
         assert swinging is None or (swinging.swings.swung >= 2 and swinging.swings.end == "near_place")
+        rate_deg_s = np.diff(leg.nose_deg)[int(turning / motion.turn_rate * LISTENED_HZ) + 1 :] * LISTENED_HZ
+        assert np.abs(rate_deg_s).max() <= (30.0 if swings else 0.0) + 1e-6
+        assert np.abs(np.diff(rate_deg_s)).max() <= NOSE_DEG_S2 / LISTENED_HZ + 1e-6
+        assert np.degrees(leg.lean[:, 0]).max() == pytest.approx(15.0, abs=1.5), "it leans into its flight, east"
+        assert np.degrees(leg.lean[-20:, 0]).min() < -3.0, "and back where it brakes"
+
+
+def test_a_craft_that_never_stops_takes_its_bearing_where_it_heard_it():
+    study = FieldStudy.of(FieldOptions("gyration", compass_deg=0.0))
+    field = study.field(5)
+    calm = replace(field, world=replace(field.world, reflectors=(), fading=Fading(math.inf)), shadows=field.shadows[:1])
+    way = circling((-100.0, 20.0), (60.0, 20.0), 0.0, 12.0)
+    gone_m = float(way.x[-1]) + 100.0
+    assert gone_m == pytest.approx(36.0, abs=1.0), "from hover to hover in the time of a circle"
+    assert way.turned_deg == pytest.approx(360.0, abs=4.0)
+    assert circling((0.0, 0.0), (0.0, 0.0), 90.0, 12.0).x == pytest.approx(np.zeros(120))
+    sweep, reading = heard_circling(calm, way, 0, study.finder, study.pattern)
+    x, _ = study.task.frame.to_enu(sweep.position)
+    east, north = field.truth
+    towards = math.degrees(math.atan2(east - x, north - 20.0))
+    assert abs(math.remainder(reading.bearing_deg - towards, 360.0)) < 8.0
+    share = (reading.bearing_deg % 360.0) / 360.0
+    assert x == pytest.approx(float(way.x[int(share * 119)]), abs=2.0)
+
+
+def test_a_mission_that_never_stops_ends_in_time():
+    mission = FieldStudy.of(FieldOptions("gyration")).fly(5)
+    assert mission.turned_deg == pytest.approx(30.0 * mission.time_s)
+    assert mission.time_s <= 400.0 + 12.0
 
 
 def test_a_row_counts_claims_and_bearings_from_afar():
@@ -110,6 +142,8 @@ def test_the_command_flies_a_row_a_planner():
         (("--turns", "half"), "--turns"),
         (("--listens", "never"), "--listens"),
         (("--compass-sd", "-1"), "--compass-sd"),
+        (("--compass-bias", "-8"), "--compass-bias"),
+        (("--antenna", "dish"), "--antenna"),
     ],
 )
 def test_what_cannot_be_flown_is_refused_in_words(arguments, told):

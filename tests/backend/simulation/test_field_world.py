@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from backend.simulation.field_world import SHADOW_DB, SHADOW_M, Shadow, antenna_pattern, drawn_field
+from backend.simulation.field_world import LATE_S, SHADOW_DB, SHADOW_M, Shadow, Way, antenna_pattern, drawn_field
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.frame import LocalFrame
 from hardware.readings import Place
@@ -30,6 +30,39 @@ def test_the_emitter_lies_in_the_area_and_the_compass_is_wrong_as_much_as_asked_
     assert off.std() == pytest.approx(8.0, rel=0.12)
     assert all(drawn_field(seed, FRAME, AREA, 0.0).world.heading_error_deg == 0.0 for seed in range(5))
     assert {len(field.world.reflectors) for field in fields} == {1, 2}
+
+
+def test_compass_and_antenna_change_nothing_else():
+    drawn, off, wide = (
+        drawn_field(3, FRAME, AREA, 4.0, **setting)
+        for setting in ({}, {"compass_deg": 8.0}, {"compass_deg": 0.0, "antenna": "wide"})
+    )
+    assert [abs(field.world.heading_error_deg) for field in (off, wide)] == [8.0, 0.0]
+    assert off.world.heading_error_deg * drawn.world.heading_error_deg > 0.0
+    assert drawn.truth == off.truth == wide.truth
+    assert drawn.world.reflectors == off.world.reflectors == wide.world.reflectors
+    sides = {drawn_field(seed, FRAME, AREA, 4.0, compass_deg=8.0).world.heading_error_deg for seed in range(20)}
+    assert sides == {-8.0, 8.0}
+
+
+@pytest.mark.parametrize(("antenna", "beam_deg"), [("yagi", 68.0), ("wide", 86.0)])
+def test_an_antenna_is_flown_with_its_own_pattern(antenna, beam_deg):
+    field, pattern = drawn_field(3, FRAME, AREA, 4.0, compass_deg=0.0, antenna=antenna), antenna_pattern(antenna)
+    above = pattern.relative_bearing_deg[pattern.gain_db > pattern.gain_db.max() - 3.0]
+    assert len(above) * 360.0 / len(pattern.gain_db) == pytest.approx(beam_deg, abs=8.0)
+    x, y = field.truth
+    reading = SparseDirectionFinder().estimate(field.sweep(x - 120.0, y, 0, 30.0), pattern)
+    assert abs(math.remainder(reading.bearing_deg - 90.0, 360.0)) < 12.0
+
+
+def test_what_is_told_in_flight_is_late_and_what_is_heard_leans():
+    field = drawn_field(3, FRAME, AREA, 0.0)
+    steps = np.arange(20.0)
+    upright, leaning = (np.zeros((20, 2)), np.tile([0.3, 0.0], (20, 1)))
+    heard, told = field.along(Way(steps, steps, 5.0 * steps, upright), 10.0, 0)
+    assert [one.at_s for one in told] == pytest.approx([one.at_s + LATE_S for one in heard])
+    other, _ = field.along(Way(steps, steps, 5.0 * steps, leaning), 10.0, 0)
+    assert max(abs(a.power_db - b.power_db) for a, b in zip(heard, other, strict=True)) > 0.2
 
 
 def test_shadows_have_their_spread_and_change_over_their_length():
