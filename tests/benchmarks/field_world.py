@@ -43,12 +43,11 @@ ROWS: Mapping[str, FieldOptions] = {
     "random_walk": FieldOptions("random_walk"),
     "gyration": FieldOptions("gyration"),
 }
-"""wedge: each bearing by itself, as before errors were estimated with the place; wide: by as much more as makes it hold
-the truth as often as `sector`."""
+"""wedge: each bearing by itself, as before errors were estimated with the place; wide: with a heading that counts as
+twice as unsure."""
 AGAINST = "whole"
-EQUAL = "wedge_wide"
+WIDE = "wedge_wide"
 JUDGED = {"sector": "adaptive_turns", "swings": "listening"}
-"""What is wanted of rows is said against EQUAL."""
 LATE_S = 400.0
 COLUMNS = (
     Column(name="compass off, degrees"),
@@ -57,7 +56,7 @@ COLUMNS = (
     Column(name="missions"),
     Column(name="time, s", decimals=0),
     Column(name=f"longer than {AGAINST}, s", decimals=0),
-    Column(name=f"longer than {EQUAL}, s", decimals=0),
+    Column(name=f"longer than {WIDE}, s", decimals=0),
     Column(name="90 %, s", decimals=0),
     Column(name=f"localized in {LATE_S:.0f} s, %", decimals=0),
     Column(name="truth in C95 at the claim, %", decimals=0),
@@ -154,7 +153,7 @@ def row(setting: Setting, name: str, found: Flown) -> tuple[Cell, ...]:
         (told.time_s, told.time_ci95_s),
         *(
             None if other not in found or other == name else paired(found[name], found[other])
-            for other in (AGAINST, EQUAL)
+            for other in (AGAINST, WIDE)
         ),
         told.time_90_s,
         float(100.0 * in_time),
@@ -176,8 +175,8 @@ def figures(settings: Mapping[Setting, Flown]) -> list[Figure]:
             half = round(told.time_ci95_s, 1)
             of = f"{name}, {setting.name}"
             made.append(plain(f"time until the claim, {of}", round(told.time_s), "s", ci95=half, note=note))
-            if name in JUDGED and EQUAL in found:
-                longer, half = paired(missions, found[EQUAL])
+            if name in JUDGED and AGAINST in found:
+                longer, half = paired(missions, found[AGAINST])
                 note = f"{len(missions)} pairs"
                 made.append(wanted(JUDGED[name], round(-longer, 1), of=setting.name, ci95=round(half, 1), note=note))
     return made

@@ -27,7 +27,7 @@ def test_rows_are_compared_mission_by_mission() -> None:
         "localized in 400 s, %"
     ] == pytest.approx(100.0)
     judged = [figure for figure in field_world.figures({SETTING: found}) if figure.wanted is not None]
-    assert [(figure.value, figure.met) for figure in judged] == [(40.0, True)]
+    assert [(figure.value, figure.met) for figure in judged] == [(25.0, True)]
 
 
 def test_what_was_kept_is_not_flown_again(tmp_path: Path) -> None:
