@@ -20,24 +20,24 @@ import numpy as np
 from shapely import Point, Polygon
 
 from backend.api.suggestion import HEIGHT_M, WIDTH_M, suggested_mission
-from backend.search.localization import DOUBT, Localization, localization
+from backend.events import BearingMeasured, BeliefUpdated, CraftSource
+from backend.search.localization import Localization, localization
 from backend.search.planning import base_policy_decision
+from backend.search.sweep_facts import Taken, sweep_fact
 from backend.settings import Settings
 from backend.simulation.walls import walls
 from backend.spec import PlannerSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
-from hardware.direction_finding.heading_offset import heading_offset
-from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
-from hardware.readings import BearingReading, Place, Sweep
+from hardware.frame import LocalFrame, angle_to_compass
+from hardware.readings import Place, Sweep
 from hardware.sim.turn import turn_once
 from hardware.sim.turntable import simulated_antenna
 from hardware.sim.world import Emitter, FrontEnd, RadioLink, World
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
-from planner.belief.verdict import points_at, verdict
+from planner.belief.verdict import points_at
 from planner.reasons import BearingsDisagree, EstimateContradicted
-from planner.types import Bearing, Peak
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table
@@ -47,6 +47,7 @@ HOME = Place(50.6234, 7.2046)
 FREQUENCY_HZ = 868_300_000.0
 HEIGHT_ABOVE_M = 40.0
 MOST_PLACES = 15
+CRAFT = CraftSource(craft_id="craft-1")
 HEADING_SIGMA_DEG = float(Settings.model_fields["heading_sigma_deg"].default)
 WRONG_DEG = 30.0
 CONTRADICTIONS = (EstimateContradicted, BearingsDisagree)
@@ -81,7 +82,7 @@ FAULTS = (
     Fault("walls that reflect", multipath=True),
 )
 UNCOVERED = (Fault("heading 10 degrees off", heading_deg=10.0), Fault("heading 20 degrees off", heading_deg=20.0))
-"""More than the stated sigma covers: the search can only tell."""
+"""More than the stated sigma covers: it has to be found from the bearings."""
 WANTED_FAULTS = (*(fault for fault in FAULTS if fault.name != "none" and not fault.multipath), *UNCOVERED)
 """Walls are the world's, no fault of the sensor."""
 
@@ -90,7 +91,7 @@ WANTED_FAULTS = (*(fault for fault in FAULTS if fault.name != "none" and not fau
 class Outcome:
     """Of one mission. in_c95, error_m: of the last belief. faulty: accepted bearings with the fault. known: those of
     them that the localizer counts as contradicting its estimate at the end. doubted: it ever said "contradict".
-    offset_told: the caution of an offset common to all bearings stood at the end."""
+    compass_deg: what the bearings are off by together, as the last belief estimates it; None without one."""
 
     localized: bool
     in_c95: bool
@@ -101,7 +102,7 @@ class Outcome:
     faulty: int
     known: int
     doubted: bool
-    offset_told: bool
+    compass_deg: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,97 +150,84 @@ def make_sky(seed: int, fault: Fault, frame: LocalFrame) -> Sky:
 
 
 def measure(
-    task: Localization, sky: Sky, pattern: AntennaPattern, finder: SparseDirectionFinder, place: tuple[float, float]
-) -> tuple[Bearing | None, bool, int]:
+    task: Localization,
+    sky: Sky,
+    pattern: AntennaPattern,
+    finder: SparseDirectionFinder,
+    place: tuple[float, float],
+    number: int,
+) -> tuple[BearingMeasured | None, bool, int]:
     """(bearing or None, faulty, rejected sweeps) at one place, retakes included."""
     sensor = task.mission.sensor
-    for attempt in range(1 + sensor.maximum_retakes):
+    for attempt in range(1, 2 + sensor.maximum_retakes):
         sweep, wrong = sky.sweep(*place)
         x, y, jumped = sky.reported(*place)
-        if jumped and sky.fault.seen:
-            sweep = dataclasses.replace(sweep, drift_m=sky.fault.jump_m)
-        reading = finder.estimate(sweep, pattern)
-        if reading.accepted and reading.quality >= sensor.minimum_quality:
-            bearing = as_bearing(reading, x, y, sensor.outlier_probability)
-            direction = math.atan2(sky.truth[1] - place[1], sky.truth[0] - place[0])
-            off_deg = abs(math.degrees(math.remainder(bearing.angle - direction, 2.0 * math.pi)))
-            return bearing, wrong or jumped or off_deg > WRONG_DEG, attempt
+        if jumped:
+            sweep = dataclasses.replace(sweep, position=sky.frame.to_geo(x, y))
+            if sky.fault.seen:
+                sweep = dataclasses.replace(sweep, drift_m=sky.fault.jump_m)
+        taken = Taken(task.emitter_id, CRAFT, f"{number}.{attempt}", number, attempt)
+        fact = sweep_fact(taken, sensor, sweep, finder.estimate(sweep, pattern), None)
+        if isinstance(fact, BearingMeasured):
+            direction = angle_to_compass(math.atan2(sky.truth[1] - place[1], sky.truth[0] - place[0]))
+            off_deg = abs(math.remainder(fact.bearing_deg - direction, 360.0))
+            return fact, wrong or jumped or off_deg > WRONG_DEG, attempt - 1
     return None, False, 1 + sensor.maximum_retakes
 
 
-def as_bearing(reading: BearingReading, x: float, y: float, outlier_probability: float) -> Bearing:
-    peaks = tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in reading.peaks)
-    angle, sigma = compass_to_angle(reading.bearing_deg), math.radians(reading.sigma_deg)
-    return Bearing(x, y, angle, sigma, outlier_probability, peaks)
-
-
 def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectionFinder) -> Outcome:
-    """One mission of the suggested specification with the base policy."""
+    """One mission of the suggested specification with the base policy; facts and beliefs are those of a flight."""
     home = HOME
     spec = suggested_mission(home)
     spec = spec.model_copy(update={"planner": PlannerSpec(method="base_policy")})
     task = localization(spec, home)
     sky = make_sky(seed, fault, task.frame)
-    bearings: list[Bearing] = []
+    measured: list[BearingMeasured] = []
     faulty: list[bool] = []
-    rejected, doubted, localized = 0, False, False
+    rejected, doubted = 0, False
     position, without = (0.0, 0.0), list[tuple[float, float]]()
-    belief = task.planning_belief(bearings)
-    for _ in range(MOST_PLACES):
+    said, belief = task.belief_fact(measured)
+    for number in range(1, MOST_PLACES + 1):
         decision = base_policy_decision(task, belief, position, without)
         position = (decision.x, decision.y)
-        bearing, wrong, refused = measure(task, sky, pattern, finder, position)
+        bearing, wrong, refused = measure(task, sky, pattern, finder, position, number)
         rejected += refused
         if bearing is None:
             without.append(position)
             continue
-        bearings.append(bearing)
+        measured.append(bearing)
         faulty.append(wrong)
-        folded = task.belief(bearings)
-        said = verdict(task.problem, task.rule, bearings, folded)
-        doubted = doubted or not said.consistent or any(isinstance(reason, CONTRADICTIONS) for reason in said.reasons)
-        belief = task.planning_belief(bearings) if folded is None else folded
-        if said.localized and not offset_stands(bearings, finder.heading_sigma_deg):
-            localized = True
+        said, belief = task.belief_fact(measured)
+        doubted = doubted or not said.consistent or any(isinstance(reason, CONTRADICTIONS) for reason in said.not_yet)
+        if said.localized:
             break
-    offset_told = offset_stands(bearings, finder.heading_sigma_deg)
-    return outcome(task, sky, belief, bearings, faulty, localized, rejected, doubted, offset_told)
-
-
-def offset_stands(bearings: Sequence[Bearing], heading_sigma_deg: float) -> bool:
-    """Whether the mission would caution against an offset common to these bearings, and claim nothing."""
-    places = np.array([(b.x, b.y) for b in bearings]).reshape(-1, 2)
-    direction = np.array([angle_to_compass(b.angle) for b in bearings])
-    own = np.sqrt(np.maximum(np.degrees([b.sigma for b in bearings]) ** 2 - heading_sigma_deg**2, 0.0))
-    doubt = max((b.outlier_probability for b in bearings), default=0.0)
-    found = heading_offset(places, direction, own, max(doubt, DOUBT))
-    return found is not None and found.significant
+    return outcome(task, sky, belief, said, measured, faulty, rejected, doubted)
 
 
 def outcome(
     task: Localization,
     sky: Sky,
     belief: GridBelief,
-    bearings: Sequence[Bearing],
+    said: BeliefUpdated,
+    measured: Sequence[BearingMeasured],
     faulty: Sequence[bool],
-    localized: bool,
     rejected: int,
     doubted: bool,
-    offset_told: bool,
 ) -> Outcome:
     spread = estimate(belief, task.problem.estimator)
+    bearings = task.planner_bearings(measured)
     known = sum(not points_at(b, spread.x, spread.y) for b, wrong in zip(bearings, faulty, strict=True) if wrong)
     return Outcome(
-        localized=localized,
+        localized=said.localized,
         in_c95=bool(Polygon(confidence_region(belief)).covers(Point(sky.truth))),
         error_m=math.dist((spread.x, spread.y), sky.truth),
-        stated_m=spread.expected_rmse,
-        bearings=len(bearings),
+        stated_m=spread.expected_rmse if said.estimate is None else said.estimate.expected_rmse_m,
+        bearings=len(measured),
         rejected=rejected,
         faulty=sum(faulty),
         known=known,
         doubted=doubted,
-        offset_told=offset_told,
+        compass_deg=said.sources[0].bias_deg if said.sources else None,
     )
 
 
@@ -257,7 +245,7 @@ COLUMNS = (
     Column(name="rejected sweeps", decimals=2),
     Column(name="faulty bearings seen through"),
     Column(name="contradiction told, %", decimals=0),
-    Column(name="common offset told, %", decimals=1),
+    Column(name="compass said to be off, median, degrees", decimals=1),
 )
 CLAIM_COLUMNS = 6
 """From "truth in C95" on: of the missions that said "localized", empty when none did."""
@@ -284,7 +272,7 @@ def row(fault: Fault, outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
         float(np.mean([o.rejected for o in outcomes])),
         f"{known} of {bad}" if bad else None,
         100.0 * float(np.mean([o.doubted for o in outcomes])),
-        100.0 * float(np.mean([o.offset_told for o in outcomes])),
+        float(np.median([o.compass_deg for o in outcomes if o.compass_deg is not None])),
     )
 
 
