@@ -17,6 +17,7 @@ const builtFromSources = [
   { find: /^maplibre-gl$/, replacement: here("node_modules/maplibre-gl/src/index.ts") },
   { find: "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url", replacement: here("src/map/maplibreWorker.ts") },
   { find: "maplibre-gl/worker", replacement: here("node_modules/maplibre-gl/src/source/worker.ts") },
+  { find: /^\.\/(globe|vertical_perspective)_(projection|transform|camera_helper)\.ts$/, replacement: here("src/map/maplibreGlobe.ts") },
   { find: "@maplibre/mlt", replacement: here("src/map/maplibreTiles.ts") },
 ];
 
