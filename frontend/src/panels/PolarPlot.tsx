@@ -22,18 +22,23 @@ function wedgePath(deg: number, sigma: number): string {
   return `M0 0L${x0} ${y0}A1 1 0 0 1 ${x1} ${y1}Z`;
 }
 
-/** Where the levels stand, degrees: not on the main lobe. */
-const labelsAt = (bearingDeg: number | undefined) => (bearingDeg !== undefined && bearingDeg > 0 && bearingDeg < 90 ? 135 : 45);
+/** Where the levels are written: in the corners, outside the circle, each with a line from its ring. */
+const LEVELS_AT = [
+  { headingDeg: 45, y: -1.13 },
+  { headingDeg: 135, y: 1.19 },
+];
 
-function Rings({ scale, labelsDeg }: { scale: PolarScale | null; labelsDeg: number }) {
-  const steps = scale ? [0, Math.round(scale.spanDb / 2)] : [];
+function Rings({ scale }: { scale: PolarScale | null }) {
+  const middleDb = scale && scale.topDb - Math.round(scale.spanDb / 2);
+  const rings = [1, scale ? radius(middleDb!, scale) : 0.56];
   return (
     <g class="polar-rings">
-      <circle r="1" />
-      <circle r="0.56" />
+      {rings.map((r) => (
+        <circle r={r} key={r} />
+      ))}
       <path d="M-1 0H1M0-1V1" />
       {["N", "E", "S", "W"].map((name, i) => {
-        const [x, y] = polarPoint(90 * i, 1.14);
+        const [x, y] = polarPoint(90 * i, 1.16);
         return (
           <text x={x} y={y} key={name}>
             {name}
@@ -41,12 +46,15 @@ function Rings({ scale, labelsDeg }: { scale: PolarScale | null; labelsDeg: numb
         );
       })}
       {scale &&
-        steps.map((down) => {
-          const [x, y] = polarPoint(labelsDeg, radius(scale.topDb - down, scale) * (down ? 1 : 1.2));
+        [scale.topDb, middleDb!].map((db, i) => {
+          const { headingDeg, y } = LEVELS_AT[i]!;
           return (
-            <text class="polar-db" x={x} y={y} key={down}>
-              {(scale.topDb - down).toFixed(0)} dB
-            </text>
+            <g class="polar-level" key={y}>
+              <path d={`M${polarPoint(headingDeg, rings[i]!).join(" ")}L${polarPoint(headingDeg, 1.42).join(" ")}`} />
+              <text x={1.3} y={y}>
+                {db.toFixed(0)} dB
+              </text>
+            </g>
           );
         })}
     </g>
@@ -60,7 +68,7 @@ export function PolarPlot({ data }: { data: PolarData }) {
     : t("sweep.plotEmpty");
   return (
     <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">
-      <Rings scale={scale} labelsDeg={labelsAt(data.bearing?.deg)} />
+      <Rings scale={scale} />
       {data.sector && (
         <g class="polar-sector" data-testid="polar-sector">
           <path class="polar-sector-goal" d={arcPath(data.sector.beginDeg, data.sector.goalDeg, RIM)} />
