@@ -160,7 +160,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
         }),
         effect(() => (home.value ? showVehicle(map) : undefined)),
         effect(() => {
-          put("candidates", candidateFeatures({ plan: proposed.value }, null));
+          put("candidates", candidateFeatures({ plan: proposed.value, bearings: [] }, null));
         }),
       );
       const draw = makeDraw(map, colours);

@@ -133,7 +133,7 @@ function bind(map: GlMap): () => void {
   const stops = [
     showVehicle(map),
     effect(() => put(map, "plan", planFeatures(spec.value))),
-    effect(() => put(map, "candidates", candidateFeatures({ plan: choice.value }, highlighted.value))),
+    effect(() => put(map, "candidates", candidateFeatures({ plan: choice.value, bearings: bearings.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
     effect(() => putOverlays(map)),
     effect(() => put(map, "ways", wayFeatures(ways.value, advisedWay.value))),

@@ -66,6 +66,15 @@ it("the chosen candidate is drawn last, on top", () => {
   expect(candidateFeatures(state, 2).features.at(-1)!.properties).toMatchObject({ index: 1, shade: 5, lit: false });
 });
 
+it("no time lies over a rose, unless its candidate is pointed at", () => {
+  const [first, ...others] = somePlan().candidates;
+  const state = seen(someBearing({ place: { lat: first!.lat, lon: first!.lon } }), somePlan());
+  const labels = (lit: number | null) =>
+    Object.fromEntries(candidateFeatures(state, lit).features.map(({ properties }) => [properties!.index, properties!.label !== ""]));
+  expect(labels(null)).toEqual({ 0: false, ...Object.fromEntries(others.map((_, i) => [i + 1, true])) });
+  expect(labels(0)[0]).toBe(true);
+});
+
 it("of several emitters each has its number and colour, and those not looked at their region", () => {
   const spec = { ...someSpec(), emitters: ["a", "b", "c"].map((id) => ({ ...someSpec().emitters[0]!, emitter_id: id })) };
   const beliefs = ["a", "b"].map((emitter_id) => someBelief({ emitter_id }));

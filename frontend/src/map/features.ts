@@ -197,9 +197,13 @@ export const measuredFeatures = (
 /** The best candidates, whose times stand on the map; the table has them all. */
 const LABELLED = 5;
 
-export function candidateFeatures(mission: Pick<MissionView, "plan">, lit: number | null): Features {
-  const plan = mission.plan?.fact;
+/** Nearer than this to where a bearing was taken a time would lie over the rose. */
+const AT_ROSE_M = 5;
+
+export function candidateFeatures({ plan: chosen, bearings }: Pick<MissionView, "plan" | "bearings">, lit: number | null): Features {
+  const plan = chosen?.fact;
   if (!plan) return collection([]);
+  const atRose = (at: LonLat) => bearings.some(({ fact }) => distanceM(at, lonLat(fact.place)) < AT_ROSE_M);
   return collection(
     rankCandidates(plan)
       .toReversed()
@@ -208,7 +212,8 @@ export function candidateFeatures(mission: Pick<MissionView, "plan">, lit: numbe
           index,
           shade: roundShade(candidate, plan, chosen),
           lit: index === lit,
-          label: from >= length - LABELLED || index === lit ? formatDuration(candidate.value_s) : "",
+          label:
+            index === lit || (from >= length - LABELLED && !atRose(lonLat(candidate))) ? formatDuration(candidate.value_s) : "",
         }),
       ),
   );
