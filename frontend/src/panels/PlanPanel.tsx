@@ -243,6 +243,13 @@ export function PlanPanel() {
       </h2>
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
+      {fact ? (
+        <p class="why" data-testid="why">
+          <span class="muted">{t("plan.why")}</span> {reasonText(fact.reason)}
+        </p>
+      ) : (
+        <p class="muted">{t("plan.none")}</p>
+      )}
       {missionId && isLive && startedAt && liveMission.value.missionId === missionId && <Decision id={missionId} />}
       {missionId && isLive && source.value?.keptByServer && phase === "hold" && (
         <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
@@ -254,23 +261,16 @@ export function PlanPanel() {
       {missionId && isLive && source.value?.keptByServer && (proposed || fact) && (
         <ProfileCard missionId={missionId} place={(proposed ?? fact!).place} />
       )}
-      {!fact && <p class="muted">{t("plan.none")}</p>}
-      {fact && (
-        <>
-          <p class="why" data-testid="why">
-            <strong>{t("plan.why")}</strong> {reasonText(fact.reason)}{" "}
-            <span class="muted">
-              {fact.source === "planner" &&
-                t("plan.effort", {
-                  rollouts: fact.rollouts.toLocaleString(locale.value),
-                  candidates: fact.candidates.length,
-                  time: formatNumber(fact.plan_ms, 0),
-                })}
-            </span>
-          </p>
-          {isLive && !proposed && <p class="muted">{t("plan.dragHint")}</p>}
-        </>
+      {fact?.source === "planner" && (
+        <p class="muted">
+          {t("plan.effort", {
+            rollouts: fact.rollouts.toLocaleString(locale.value),
+            candidates: fact.candidates.length,
+            time: formatNumber(fact.plan_ms, 0),
+          })}
+        </p>
       )}
+      {fact && isLive && !proposed && <p class="muted">{t("plan.dragHint")}</p>}
     </section>
   );
 }
