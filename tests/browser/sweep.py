@@ -26,7 +26,7 @@ from tests.browser.conftest import CHROMIUM, SETTINGS, serving
 from tests.browser.screen import Screen
 from tests.browser.served import REPOSITORY, Server
 
-SIZES = {"laptop": (1440, 900), "tablet": (834, 1112), "phone": (390, 844)}
+SIZES = {"laptop": (1440, 900), "tablet": (820, 1180), "phone": (390, 844), "small": (1280, 720)}
 THEMES = ("outdoor", "indoor")
 JOURNALS = ("demo-px4-open", "demo-ardupilot-multipath", "aborted", "links")
 """Flown once and stored: what the library shows before anybody flies."""
