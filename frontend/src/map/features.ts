@@ -212,8 +212,7 @@ export function candidateFeatures({ plan: chosen, bearings }: Pick<MissionView, 
           index,
           shade: roundShade(candidate, plan, chosen),
           lit: index === lit,
-          label:
-            index === lit || (from >= length - LABELLED && !atRose(lonLat(candidate))) ? formatDuration(candidate.value_s) : "",
+          label: index === lit || (from >= length - LABELLED && !atRose(lonLat(candidate))) ? formatDuration(candidate.value_s) : "",
         }),
       ),
   );
