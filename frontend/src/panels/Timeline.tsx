@@ -267,7 +267,7 @@ export function Timeline() {
           }}
         >
           <Icon name={speed === null ? "play" : "pause"} />
-          {t(speed === null ? "timeline.play" : "timeline.pause")}
+          <span class="play-word">{t(speed === null ? "timeline.play" : "timeline.pause")}</span>
         </button>
         <select
           data-testid="pace"
