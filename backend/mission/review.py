@@ -97,12 +97,14 @@ class Review:
     async def delete(self, mission_id: str, by: str) -> None:
         """Out of the list, to be restored for some days. Raises MissionConflict while it is under way."""
         async with self.records.lock(mission_id):  # no start comes in between
+            if self.flights.running(mission_id) is not None:  # whether its facts can be read or not
+                raise MissionConflict(refusals.StillUnderWay())
             try:
                 state, _ = await self.records.load(mission_id)
             except JournalDamaged:
                 await self._delete_unread(mission_id, by)
                 return
-            if self.flights.running(mission_id) is not None or state.search.stage == "open":
+            if state.search.stage == "open":
                 raise MissionConflict(refusals.StillUnderWay())
             await self.records.give(mission_id, state, Reviewed(MissionDeleted(by=by)))
 

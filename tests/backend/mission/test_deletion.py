@@ -11,7 +11,9 @@ from refusals import refusing
 from stage import Stage
 
 from backend import commands
+from backend.ports import JournalDamaged
 from backend.reasons import refusals
+from backend.reasons.storage import MissionDamaged
 from backend.search.errors import MissionConflict
 
 
@@ -21,6 +23,19 @@ async def test_a_mission_in_flight_stays_in_the_list(stage: Stage) -> None:
     with refusing(refusals.StillUnderWay(), MissionConflict):
         await stage.room.review.delete(mission_id, "ben")
     assert not stage.journal.state(mission_id).search.deleted
+
+
+async def test_a_mission_in_flight_stays_though_its_facts_are_damaged_meanwhile(stage: Stage, monkeypatch) -> None:
+    mission_id = await stage.room.drafts.create(spec(), "anna")
+    assert (await order(stage, mission_id, commands.Start())).accepted
+
+    async def damaged(*_: object) -> None:
+        raise JournalDamaged(MissionDamaged(mission_id, "event 2"))
+
+    monkeypatch.setattr(stage.journal, "read", damaged)
+    with refusing(refusals.StillUnderWay(), MissionConflict):
+        await stage.room.review.delete(mission_id, "ben")
+    assert not {"mission_ended", "mission_deleted"} & set(stage.journal.kinds(mission_id))
 
 
 async def test_a_deleted_mission_flies_once_it_is_restored(stage: Stage) -> None:
