@@ -5,6 +5,11 @@ from __future__ import annotations
 from backend.craft.inputs import NetsNotTaken, NetsUp
 from backend.craft.step import CraftStep, alert, clear_alerts
 from backend.events import NetsHung
+from backend.reasons import Reason
+from backend.reasons.safety import NoWayHome, OutsideFence
+
+MOVED_M = 5.0
+"""A vehicle that hovers stays within this."""
 
 
 def nets_looked_at(step: CraftStep, given: NetsUp | NetsNotTaken) -> None:
@@ -15,5 +20,16 @@ def nets_looked_at(step: CraftStep, given: NetsUp | NetsNotTaken) -> None:
     if isinstance(given, NetsUp):
         step.record(NetsHung(craft_id=craft.craft_id))
         clear_alerts(step, "nets")
-    elif all(raised.topic != "nets" or raised.reason != given.because for raised in craft.open_alerts):
+    elif not any(raised.topic == "nets" and _same(raised.reason, given.because) for raised in craft.open_alerts):
         alert(step, "nets", "warning", given.because)
+
+
+def _same(said: Reason, because: Reason) -> bool:
+    """Also where a vehicle that hovers is a little further in or out."""
+    match said, because:
+        case OutsideFence(what=before, beyond_m=then_m), OutsideFence(what=after, beyond_m=now_m):
+            return before == after and abs(now_m - then_m) < MOVED_M
+        case NoWayHome(distance_m=then_m), NoWayHome(distance_m=now_m):
+            return abs(now_m - then_m) < MOVED_M
+        case _:
+            return said == because

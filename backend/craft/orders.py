@@ -144,7 +144,7 @@ def _resume(step: CraftStep, given: CraftOrdered) -> None:
     step.do(CancelTimer("console_return"))
     step.do(CancelTimer("order"))
     reason = Ordered("resume", given.by)
-    if search.stage == "ended":
+    if search.stage == "ended" or craft.nets_wait:  # control is taken back from a pilot, and that is all
         insist(step, "hold")
         step.go("hold", reason)
     elif given.on_ground and not search.found:
@@ -274,7 +274,8 @@ def _take_control(step: CraftStep, by: str) -> None:
 
 
 def resume_refusal(craft: CraftState, search: SearchState) -> Reason | None:
-    """Why resuming is refused whatever safety says, None when it is not."""
+    """Why resuming is refused whatever safety says, None when it is not. From a pilot who has given back it takes
+    control, without which nothing else can be ordered: nets that wait are no reason against that."""
     if not craft.engaged:
         return _not_started(search)
     if search.stage == "ended" and craft.phase != "manual":
@@ -283,7 +284,7 @@ def resume_refusal(craft: CraftState, search: SearchState) -> Reason | None:
         return refusals.NotHeld()
     if "vehicle" in craft.links_down:
         return NoLink()
-    return refusals.NetsChanging() if craft.nets_wait and search.stage != "ended" else None
+    return refusals.NetsChanging() if craft.nets_wait and craft.phase == "hold" and search.stage != "ended" else None
 
 
 def _not_started(search: SearchState) -> Reason:

@@ -69,6 +69,15 @@ class NetsKeeper:
             owed = self.owed[noted.craft_id] = Owed(mission_id, noted.before, [])
         owed.ours.append(noted.after)
 
+    def _noted(self, mission_id: str, noted: NetsNoted) -> bool:
+        """The last that was: an autopilot that does not take them is given them every few seconds."""
+        owed = self.owed.get(noted.craft_id)
+        return owed is not None and (owed.mission_id, owed.before, owed.ours[-1]) == (
+            mission_id,
+            noted.before,
+            noted.after,
+        )
+
     def one(self, craft_id: str) -> asyncio.Lock:
         """Over the nets of one craft: what is put back after a landing is not overtaken by a change in flight."""
         return self._locks.setdefault(craft_id, asyncio.Lock())
@@ -104,8 +113,9 @@ class NetsKeeper:
         """own: the owner's, None where those in the autopilot are. Raises HardwareError."""
         plan = await craft.vehicle.plan_nets(mission_nets(limits_of(task)), own)
         noted = NetsNoted(craft_id=craft.craft_id, before=plan.before, after=plan.after)
-        await record(noted)
-        self._note(mission_id, noted)
+        if not self._noted(mission_id, noted):
+            await record(noted)
+            self._note(mission_id, noted)
         await craft.vehicle.set_nets(plan.after)
 
     async def _settle(self, craft: CraftEquipment) -> None:

@@ -162,8 +162,9 @@ class MissionRunner:
     def waits_for_nets(self, craft_id: str) -> bool:
         """Nothing else keeps the craft from being resumed: a pilot who flies is not fenced in."""
         craft, telemetry = self._state.crafts[craft_id], self.crafts[craft_id].equipment.vehicle.telemetry()
-        only_nets = resume_refusal(craft, self._state.search) == NetsChanging()
-        return only_nets and telemetry.connected and not resume_vetoes(telemetry)
+        waits = craft.nets_wait and self._state.search.stage != "ended"
+        only_nets = resume_refusal(craft, self._state.search) in (None, NetsChanging())
+        return waits and only_nets and telemetry.connected and not resume_vetoes(telemetry)
 
     def recover(self) -> None:
         """After a restart: each craft of ours in hold, unless somebody else flies it or it has come down as ordered."""

@@ -6,6 +6,7 @@ import pytest
 from facts import (
     OTHER_AREA,
     OURS,
+    PILOT,
     SPEC,
     VETO,
     bearing,
@@ -20,6 +21,7 @@ from backend.events import AlertRaised, CommandRefused, NetsHung
 from backend.mission.inputs import Context, ServerCameBack
 from backend.mission.state import fold
 from backend.reasons.refusals import NetsChanging
+from backend.reasons.safety import NoWayHome, OutsideFence, PilotControls
 from backend.search.effects import SearchElsewhere, UpdateBelief
 from backend.spec import FIRST_EMITTER, SearchArea
 
@@ -109,3 +111,31 @@ def test_objections_refuse_another_area() -> None:
     assert walk.search.spec == SPEC
     (refused,) = walk.of_kind(CommandRefused)
     assert refused.reason == VETO
+
+
+def test_while_nets_wait_resuming_takes_control_back_from_a_pilot_and_flies_nowhere() -> None:
+    """Else nothing could be ordered: what a pilot had is held, returned and landed once control is taken back."""
+    walk = changed()
+    walk.to_craft(inputs.AuthorityHeard(PILOT))
+    assert refusal(walk.command(commands.Return())) == PilotControls()
+    assert resume_refusal(walk.craft, walk.search) is None
+    asked = walk.command(commands.Resume())
+    assert refusal(asked) is None
+    assert sent(asked) == [effects.HoldVehicle()]
+    assert (walk.craft.phase, walk.craft.nets_wait, walk.craft.taken_over) == ("hold", True, False)
+    assert refusal(walk.command(commands.Resume())) == NetsChanging()
+    for order in (commands.Hold(), commands.Return(), commands.Land()):
+        assert refusal(walk.command(order)) is None
+
+
+def test_a_vehicle_that_hovers_outside_is_said_once_and_again_where_it_has_moved() -> None:
+    walk = changed()
+    for beyond_m in (12.0, 12.3, 11.8, 40.0, 40.2):
+        walk.to_craft(inputs.NetsNotTaken(OutsideFence("vehicle", beyond_m)))
+    for distance_m in (200.0, 200.4):
+        walk.to_craft(inputs.NetsNotTaken(NoWayHome(distance_m)))
+    assert [raised.reason for raised in walk.of_kind(AlertRaised)] == [
+        OutsideFence("vehicle", 12.0),
+        OutsideFence("vehicle", 40.0),
+        NoWayHome(200.0),
+    ]

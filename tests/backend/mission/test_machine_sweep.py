@@ -90,7 +90,8 @@ def check_rules(before: MissionState, given_: Input, after: MissionState, asked:
         searching = [e for e in moved if isinstance(e, SEARCHES)]
         assert not searching, f"{given_} flew on before the nets of the new area hang"
         if isinstance(given_, Commanded) and isinstance(command, commands.Resume | commands.Override):
-            assert refusal(asked) is not None or given_.command_id in before.answered
+            taken_back = isinstance(command, commands.Resume) and craft.phase == "manual" and after.phase == "hold"
+            assert refusal(asked) is not None or given_.command_id in before.answered or taken_back
     kept = next(iter(after.crafts.values())).nets_wait
     hung = isinstance(given_, ToCraft) and isinstance(given_.given, inputs.NetsUp)
     started = isinstance(command, commands.Start)

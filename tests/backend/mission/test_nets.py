@@ -256,14 +256,14 @@ async def test_of_two_changes_at_once_the_nets_are_those_of_the_area_that_is_sea
         centre=Place(lat=50.0004, lon=7.0), sigma_major_m=40.0, sigma_minor_m=40.0, major_axis_deg=0.0
     )
     both = [
-        asyncio.ensure_future(order(stage, mission_id, elsewhere(60.0, prior))),
+        asyncio.ensure_future(order(stage, mission_id, elsewhere(75.0, prior))),
         asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0))),
     ]
     await stage.until(mission_id, "nets_noted", 2)
     done.set()
     assert [reply.accepted for reply in await asyncio.gather(*both)] == [True, True]
     first, second = stage.journal.of_kind(mission_id, AreaChanged)
-    assert {first.search.fence_margin_m, second.search.fence_margin_m} == {60.0, 90.0}
+    assert {first.search.fence_margin_m, second.search.fence_margin_m} == {75.0, 90.0}
     assert stage.active.task.mission == stage.journal.state(mission_id).search.mission
     noted = stage.journal.of_kind(mission_id, NetsNoted)
     assert len(noted) == 3
@@ -279,3 +279,29 @@ async def test_an_order_that_is_sent_again_hangs_no_nets_of_an_area_of_before(st
     hanging = stage.vehicle.nets
     assert (await stage.room.flights.command(mission_id, first, author)).accepted, "it was"
     assert stage.vehicle.nets == hanging
+
+
+async def test_nets_that_are_never_taken_are_noted_once_and_leave_a_way_home_after_a_pilot(
+    stage: Stage, monkeypatch
+) -> None:
+    mission_id = await held(stage)
+    monkeypatch.setattr("backend.mission.elsewhere.AGAIN_S", 0.02)
+    tries, at_once = [], stage.vehicle.set_nets
+
+    async def counted(nets: Nets) -> None:
+        tries.append(nets)
+        await at_once(nets)
+
+    monkeypatch.setattr(stage.vehicle, "set_nets", counted)
+    stage.vehicle.nets_refused = FenceReadBackDifferent(3)
+    await stage.restart()
+    assert (await order(stage, mission_id, elsewhere(90.0))).accepted
+    await stage.until_true(lambda: len(tries) > 5)
+    assert len(stage.journal.of_kind(mission_id, NetsNoted)) == 2
+    stage.vehicle.pilot_takes_over()
+    await stage.until_phase(mission_id, "manual")
+    stage.vehicle.pilot_gives_back()
+    stage.vehicle.stuck = False
+    for command in (commands.Resume(), commands.Return()):
+        assert (await order(stage, mission_id, command)).accepted
+    await stage.until_phase(mission_id, "landing")
