@@ -3,10 +3,14 @@
 `CROSSFIX_WRITE_GOLDEN=1 pytest tests/planner/policy/test_several_golden.py` rewrites them.
 """
 
+from __future__ import annotations
+
 import json
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +18,7 @@ import pytest
 from planner.belief.joint import joint_prior, update_joint
 from planner.options import CROSSFIX, FIELD
 from planner.policy.several import Wanted, plan_several, times_together
+from planner.reasons import SoonestTogether
 from planner.study.scenarios import scenario
 from planner.types import Bearing, LinearConstantMotion
 
@@ -23,9 +28,9 @@ TAGS = ((60.0, 60.0), (250.0, 70.0), (150.0, 110.0), (90.0, 10.0))
 PROBLEM = replace(WORLD.problem, motion=LinearConstantMotion(7.0, 11.2), estimator="geometric_median")
 
 
-def believed(places):
+def believed(places: Sequence[tuple[float, float]]) -> list[Wanted]:
     """Of each tag by a sensor whose bias nobody knows, heard without error from each of the places."""
-    found = []
+    found = list[Wanted]()
     for a, b in TAGS:
         belief = joint_prior(PROBLEM)
         for x, y in places:
@@ -42,10 +47,11 @@ CASES = {
 }
 
 
-def decided(name):
+def decided(name: str) -> dict[str, Any]:
     places, options = CASES[name]
     tags = believed(places)
     chosen = plan_several(tags, places[-1], options)
+    assert isinstance(chosen.reason, SoonestTogether)
     beside = times_together(tags, places[-1], np.array([(chosen.x, chosen.y), (30.0, 30.0)]), options, 8)
     return {
         "place": [chosen.x, chosen.y],
@@ -58,7 +64,7 @@ def decided(name):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_emitters_that_are_alike_get_the_golden_decision(name):
+def test_emitters_that_are_alike_get_the_golden_decision(name: str) -> None:
     now = decided(name)
     if os.environ.get("CROSSFIX_WRITE_GOLDEN"):
         kept = json.loads(GOLDEN.read_text()) if GOLDEN.exists() else {}
