@@ -103,6 +103,19 @@ class Told:
     forecasts: list[bool]
 
 
+def sound(kept: Told) -> bool:
+    """Whether what came out of a file can be reckoned with: finite, spreads above zero, of crafts that flew."""
+    numbers = [
+        *(number for fix in kept.fixes for number in (fix.error_m, fix.stated_m)),
+        *(number for one in kept.flown.values() for number in (one.in_file_deg, one.mounted_deg)),
+        *(number for error in kept.errors for number in (error.error_deg, error.sigma_deg)),
+        *(number for leg in kept.legs for number in (leg.distance_m, leg.time_s)),
+    ]
+    spreads = [*(fix.stated_m for fix in kept.fixes), *(error.sigma_deg for error in kept.errors)]
+    flew = all(error.craft_id in kept.flown for error in kept.errors)
+    return flew and all(math.isfinite(number) for number in numbers) and all(spread > 0.0 for spread in spreads)
+
+
 def told(recorded: Sequence[Recorded]) -> Told:
     """recorded: of FACTS_NEEDED, in order."""
     started = [r.event for r in recorded if isinstance(r.event, MissionStarted)]

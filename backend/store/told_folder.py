@@ -16,7 +16,7 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
-from backend.search.told import RECKONING, Told
+from backend.search.told import RECKONING, Told, sound
 from backend.settings import Settings
 from backend.store.digest import MissionDigest, to_columns
 
@@ -55,7 +55,7 @@ class ToldFolder:
             kept = _KEPT.validate_json(self._file(digest.mission_id).read_bytes())
         except (OSError, ValidationError):
             return None
-        return kept.told if kept.state == state_of(digest) else None
+        return kept.told if kept.state == state_of(digest) and sound(kept.told) else None
 
     def keep(self, digest: MissionDigest, told: Told) -> None:
         """In the place of what the mission told before. digest: read before the facts."""
@@ -75,7 +75,10 @@ class ToldFolder:
     def forget(self, mission_ids: Collection[str]) -> None:
         """Nothing happens to a mission of which nothing is kept."""
         for mission_id in mission_ids:
-            self._file(mission_id).unlink(missing_ok=True)
+            try:
+                self._file(mission_id).unlink(missing_ok=True)
+            except OSError as error:
+                log.warning("mission %s: what it told cannot be removed: %s", mission_id, error)
 
     def _file(self, mission_id: str) -> Path:
         return self.directory / f"{mission_id}.json"

@@ -5,12 +5,14 @@ from __future__ import annotations
 import gzip
 import hashlib
 import json
+import math
+from dataclasses import replace
 from typing import Any
 
 from pydantic import TypeAdapter
 
 from backend.events import BeliefUpdated, Recorded, TruthNoted
-from backend.search.told import RECKONING, Told, told
+from backend.search.told import RECKONING, Told, sound, told
 from backend.settings import REPOSITORY
 from backend.spec import Place
 from backend.store.entries import EventRow, to_records
@@ -48,3 +50,17 @@ def test_what_is_told_changes_with_its_reckoning_only() -> None:
     assert (len(said["errors"]), len(said["fixes"]), len(said["legs"]), len(said["forecasts"])) == (3, 1, 2, 3)
     digest = hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
     assert TOLD.get(RECKONING) == digest, "raise RECKONING in backend.search.told, and name the new digest here"
+
+
+def test_what_cannot_have_been_told_is_not_sound() -> None:
+    said = told(flown())
+    first = said.errors[0]
+    odd = [
+        replace(first, sigma_deg=0.0),
+        replace(first, sigma_deg=math.inf),
+        replace(first, error_deg=math.nan),
+        replace(first, craft_id="another"),
+    ]
+    assert sound(said)
+    assert not any(sound(replace(said, errors=[one])) for one in odd)
+    assert not sound(replace(said, fixes=[replace(said.fixes[0], error_m=math.nan)]))
