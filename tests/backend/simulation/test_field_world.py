@@ -33,10 +33,9 @@ def test_the_emitter_lies_in_the_area_and_the_compass_is_wrong_as_much_as_asked_
 
 
 def test_compass_and_antenna_change_nothing_else():
-    drawn, off, wide = (
-        drawn_field(3, FRAME, AREA, 4.0, **setting)
-        for setting in ({}, {"compass_deg": 8.0}, {"compass_deg": 0.0, "antenna": "wide"})
-    )
+    drawn = drawn_field(3, FRAME, AREA, 4.0)
+    off = drawn_field(3, FRAME, AREA, 4.0, compass_deg=8.0)
+    wide = drawn_field(3, FRAME, AREA, 4.0, compass_deg=0.0, antenna="wide")
     assert [abs(field.world.heading_error_deg) for field in (off, wide)] == [8.0, 0.0]
     assert off.world.heading_error_deg * drawn.world.heading_error_deg > 0.0
     assert drawn.truth == off.truth == wide.truth
