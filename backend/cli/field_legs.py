@@ -50,7 +50,7 @@ def flown(here: tuple[float, float], place: tuple[float, float], heading: float,
 
 
 def speeds(length: float, flying_s: FloatArray) -> FloatArray:
-    """(n,) m/s after so many seconds of a straight flight of `length` m > 0 from hover to hover."""
+    """(n,) m/s at (n,) seconds after the start of a straight flight of `length` m > 0, from hover to hover."""
     motion = FullMotion()
     fastest = min(motion.speed, math.sqrt(motion.acceleration * length))
     ramp_s, cruise_s = fastest / motion.acceleration, (length - fastest**2 / motion.acceleration) / fastest

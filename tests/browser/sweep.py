@@ -1,9 +1,8 @@
-"""Every screen in both themes and three sizes as pictures, and what is clipped there: `make screens SCREENS=folder`."""
+"""Every screen in both themes and four sizes as pictures, and what is clipped there: `make screens SCREENS=folder`."""
 
 from __future__ import annotations
 
 import argparse
-import gzip
 import json
 import shutil
 import tempfile
@@ -18,18 +17,13 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
-from backend.store.brought import raw_files
-from backend.store.entries import EventRow, to_records
-from backend.store.upgrade import FIRST_FORM
-from backend.wire.bundle import bundle
 from tests.browser.conftest import CHROMIUM, SETTINGS, serving
 from tests.browser.screen import Screen
-from tests.browser.served import REPOSITORY, Server
+from tests.browser.served import Server
+from tests.browser.stock import TAGS, brought, search_of_tags, ways
 
 SIZES = {"laptop": (1440, 900), "tablet": (820, 1180), "phone": (390, 844), "small": (1280, 720)}
 THEMES = ("outdoor", "indoor")
-JOURNALS = ("demo-px4-open", "demo-ardupilot-multipath", "aborted", "links")
-"""Flown once and stored: what the library shows before anybody flies."""
 
 CLIPPED = """() => [...document.querySelectorAll("body *")].filter((one) => {
   const { overflowX, visibility } = getComputedStyle(one);
@@ -53,69 +47,6 @@ class Shown:
     held: str
     tags: str
     """Of eight tags, with bearings from a hand antenna; nothing flies."""
-
-
-TAGS = "\n".join(f"150.{number} hare {number}" for number in range(1, 9))
-
-ROADS = {"kind": "road"}, [[-0.004, -0.0012], [0.004, -0.0009], [0.006, 0.001]]
-RIVER = {"kind": "barrier"}, [[-0.004, 0.0002], [-0.001, 0.0004], [0.004, 0.0001]]
-BRIDGE = {"kind": "path"}, [[0.001, -0.001], [0.0012, 0.0012]]
-
-
-def ways(at: tuple[float, float]) -> bytes:
-    """A road, a river and a path over it, around a place (lon, lat), as GeoJSON."""
-    features = [
-        {
-            "type": "Feature",
-            "properties": kind,
-            "geometry": {"type": "LineString", "coordinates": [[at[0] + x, at[1] + y] for x, y in corners]},
-        }
-        for kind, corners in (ROADS, RIVER, BRIDGE)
-    ]
-    return json.dumps({"type": "FeatureCollection", "features": features}).encode()
-
-
-def search_of_tags(server: Server) -> str:
-    """A draft of eight tags, the first three heard twice by somebody with an antenna in their hand."""
-    address = server.url.rstrip("/") + "/api/missions"
-    spec = server.get("/api/defaults")["spec"]
-    first = spec["emitters"][0] | {"kind": "pulsed"}
-    named = (line.split(" ", 1) for line in TAGS.splitlines())
-    spec["emitters"] = [
-        first | {"emitter_id": f"emitter-{number}", "frequency_hz": float(mhz) * 1e6, "label": label}
-        for number, (mhz, label) in enumerate(named, 1)
-    ]
-    drafted = httpx.post(address, json=spec, timeout=60)
-    drafted.raise_for_status()
-    mission = drafted.json()["mission_id"]
-    lon, lat = spec["area"]["coordinates"][0][0]
-    for number in range(6):
-        report = {
-            "bearing_id": f"by-hand-{number}",
-            "by": "Ada",
-            "emitter_id": f"emitter-{number // 2 + 1}",
-            "place": {"lon": lon + 0.003 * (number % 2), "lat": lat},
-            "bearing_deg": (60.0, 320.0)[number % 2] - 6 * number,
-            "sigma_deg": 8,
-        }
-        httpx.post(f"{address}/{mission}/bearings", json=report, timeout=60).raise_for_status()
-    return mission
-
-
-def stored(server: Server, name: str) -> str:
-    """A stored journal as a mission of this server; its id."""
-    kept = json.loads(gzip.decompress((REPOSITORY / f"tests/golden/journals/{name}.json.gz").read_bytes()))
-    rows = [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in kept["rows"]]
-    mission = kept["mission_id"]
-    body = bundle(to_records(mission, rows), {}, raw_files(mission, (), {}))
-    address = server.url.rstrip("/") + "/api/bundles"
-    httpx.post(address, content=body, timeout=60, headers={"Content-Type": "application/zip"})
-    return mission
-
-
-def brought(server: Server) -> list[str]:
-    """Several stored journals as missions of this server; their ids."""
-    return [stored(server, name) for name in JOURNALS]
 
 
 def nothing(_: Screen) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import time
 
 import numpy as np
 import pytest
@@ -112,13 +113,25 @@ def map_picture(screen: Screen) -> np.ndarray:
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
 
 
+def still_picture(screen: Screen) -> np.ndarray:
+    """The map's, as soon as two after one another are the same: a busy machine goes on drawing for seconds."""
+    before, until = map_picture(screen), time.monotonic() + 60.0
+    while time.monotonic() < until:
+        screen.page.wait_for_timeout(400)
+        now = map_picture(screen)
+        if now.shape == before.shape and np.array_equal(now, before):
+            return now
+        before = now
+    raise AssertionError("the map does not come to rest")
+
+
 def rose_pixels(screen: Screen) -> np.ndarray:
     """(n, 2), row and column of the map: what the switch of the roses shows and hides."""
     boxes = screen.page.locator(".map-layers input")
-    shown = map_picture(screen)
+    shown = still_picture(screen)
     boxes.evaluate_all(ROSES)
     screen.page.wait_for_timeout(400)
-    hidden = map_picture(screen)
+    hidden = still_picture(screen)
     boxes.evaluate_all(ROSES)
     screen.page.wait_for_timeout(400)
     return np.argwhere(np.abs(shown - hidden).max(axis=2) > 12)

@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from screen import OpenScreen, Screen
 from served import Server
 
-from tests.browser.sweep import stored
+from tests.browser.stock import stored
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 

@@ -7,7 +7,8 @@ from legible import wrong
 from screen import OpenScreen
 from served import Server
 
-from tests.browser.sweep import HELD, SIZES, Shown, brought, screens, search_of_tags
+from tests.browser.stock import brought, search_of_tags
+from tests.browser.sweep import HELD, SIZES, Shown, screens
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
 

@@ -166,7 +166,7 @@ def drawn_mah(record: Sequence[Passed]) -> float | None:
 
 
 def speed_m_s(record: Sequence[Passed]) -> float | None:
-    """Median over ground of what is told faster than `FLYING_M_S`; None when nothing is."""
+    """Median of the reported ground speeds above `FLYING_M_S`; None without one."""
     told = [p.fields for p in record if p.way == "from" and p.number == GLOBAL_POSITION]
     speeds = [math.hypot(fields["vx"], fields["vy"]) / 100.0 for fields in told]
     return statistics.median(flying) if (flying := [speed for speed in speeds if speed > FLYING_M_S]) else None

@@ -11,7 +11,7 @@ import pytest
 from shapely.geometry import shape
 
 from backend.maps.refusal import MapRefused
-from backend.maps.upload import remove_abandoned
+from backend.maps.upload import ABANDONED_S, remove_abandoned
 from backend.maps.ways import MOST_POSITIONS, kind_of, read_ways
 from backend.maps.ways_folder import WaysFolder
 from backend.reasons.maps import NotReadableAs, PartLeftOut
@@ -204,5 +204,8 @@ def test_notes_of_another_version_keep_nobody_from_the_ways(tmp_path: Path) -> N
 
 
 def test_the_rest_of_an_upload_that_ends_meanwhile_is_no_trouble(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(Path, "glob", lambda folder, pattern: iter([folder / ".upload-x.part"]))
-    remove_abandoned(tmp_path, 0.0)
+    ended, abandoned = tmp_path / ".upload-ended.part", tmp_path / ".upload-abandoned.part"
+    abandoned.touch()
+    monkeypatch.setattr(Path, "glob", lambda folder, pattern: iter([ended, abandoned]))
+    remove_abandoned(tmp_path, abandoned.stat().st_mtime + ABANDONED_S + 1.0)
+    assert not abandoned.exists()
