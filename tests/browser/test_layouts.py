@@ -126,15 +126,19 @@ def still_picture(screen: Screen) -> np.ndarray:
 
 
 def rose_pixels(screen: Screen) -> np.ndarray:
-    """(n, 2), row and column of the map: what the switch of the roses shows and hides."""
-    boxes = screen.page.locator(".map-layers input")
-    shown = still_picture(screen)
-    boxes.evaluate_all(ROSES)
-    screen.page.wait_for_timeout(400)
-    hidden = still_picture(screen)
-    boxes.evaluate_all(ROSES)
-    screen.page.wait_for_timeout(400)
-    return np.argwhere(np.abs(shown - hidden).max(axis=2) > 12)
+    """(n, 2), row and column of the map: what the switch of the roses shows and hides. Compared again where the bar
+    has grown by a line of text meanwhile, as it does where telemetry comes late."""
+    boxes, until = screen.page.locator(".map-layers input"), time.monotonic() + 60.0
+    while time.monotonic() < until:
+        shown = still_picture(screen)
+        boxes.evaluate_all(ROSES)
+        screen.page.wait_for_timeout(400)
+        hidden = still_picture(screen)
+        boxes.evaluate_all(ROSES)
+        screen.page.wait_for_timeout(400)
+        if shown.shape == hidden.shape == still_picture(screen).shape:
+            return np.argwhere(np.abs(shown - hidden).max(axis=2) > 12)
+    raise AssertionError("the map keeps changing its size")
 
 
 def test_legends_cover_neither_a_rose_nor_the_vehicle(server: Server, open_screen: OpenScreen) -> None:
