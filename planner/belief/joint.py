@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from planner.belief import compiled_evidence, evidence
+from planner.belief.blocks import Places, weighed_in_blocks
 from planner.belief.evidence import SMALLEST_SIGMA, Evidence, sightings
 from planner.belief.grid import (
     COARSE_CELLS,
@@ -177,23 +178,28 @@ def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatA
 
 def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
     """All bearings on the cells of the grid: mass of each cell, and of the errors of each source."""
-    rows, columns = np.nonzero(belief.prior)
-    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = log_prior(belief, rows, columns, x, y)
-    found: list[tuple[str, int, ErrorPrior, Nodes, Evidence]] = []
-    for source, taken in told_by(belief).items():
-        prior, stretches = belief.prior_of(source), belief.stretches_of(source)
-        grid = belief.narrowed.get(source) or error_nodes(prior, taken, stretches)
-        weighed = weighing(x, y, sightings(taken), grid, stretches)
-        log = log + weighed.log
-        if taken:
-            found.append((source, len(taken), prior, grid, weighed))
-    mass = np.exp(log - log.max())
-    mass /= mass.sum()
-    density = np.zeros_like(belief.prior)
-    density[rows, columns] = mass
-    errors = tuple(_errors(*one, mass=mass, x=x, y=y) for one in found)
-    return replace(belief, density=density, errors=errors)
+    told = told_by(belief)
+    sources = [
+        (
+            sightings(taken),
+            belief.narrowed.get(source) or error_nodes(belief.prior_of(source), taken, belief.stretches_of(source)),
+            belief.stretches_of(source),
+        )
+        for source, taken in told.items()
+    ]
+
+    def weigh(x: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
+        found = [weighing(x, y, *source) for source in sources]
+        log = silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else np.zeros(len(x))
+        return (sum((one.log for one in found), start=log), *(part for one in found for part in one[1:]))
+
+    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh)
+    errors = tuple(
+        _errors(source, len(taken), belief.prior_of(source), grid, places, *places.parts[3 * i : 3 * i + 3])
+        for i, ((source, taken), (_, grid, _)) in enumerate(zip(told.items(), sources, strict=True))
+        if taken
+    )
+    return replace(belief, density=places.density, errors=errors)
 
 
 def _errors(
@@ -201,18 +207,16 @@ def _errors(
     bearings: int,
     prior: ErrorPrior,
     grid: Nodes,
-    weighed: Evidence,
-    mass: FloatArray,
-    x: FloatArray,
-    y: FloatArray,
+    places: Places,
+    bias: FloatArray,
+    scale: FloatArray,
+    rate: FloatArray,
 ) -> SourceErrors:
     """The errors' masses, summed over the places."""
-    mean = weighed.bias @ grid.bias
+    mass, mean = places.mass, bias @ grid.bias
     off = mass * (mean - float(mass @ mean))
-    with_place = np.array([off @ x, off @ y])
-    return SourceErrors(
-        source, bearings, prior, grid, mass @ weighed.bias, mass @ weighed.scale, mass @ weighed.rate, with_place
-    )
+    with_place = np.array([off @ places.x, off @ places.y])
+    return SourceErrors(source, bearings, prior, grid, mass @ bias, mass @ scale, mass @ rate, with_place)
 
 
 def _cropped(belief: JointBelief) -> JointBelief:

@@ -114,7 +114,7 @@ def test_the_belief_after_sharing_is_the_marginal_over_its_own_cells():
         cells = replace(own, prior=found.prior, density=found.density, x0=found.x0, y0=found.y0, h=found.h)
         plain = each_by_node(cells, "craft", grid) * grid.weight * np.exp(others - others.max())
         mass = plain.sum(axis=(1, 2, 3))
-        assert found.density[np.nonzero(found.prior)] == pytest.approx(mass / mass.sum(), rel=5e-3, abs=1e-7)
+        assert 0.5 * np.abs(found.density[np.nonzero(found.prior)] - mass / mass.sum()).sum() < 5e-4
         of_bias = plain.sum(axis=(0, 1, 2))
         mean = float(of_bias @ grid.bias / of_bias.sum())
         assert found.errors[0].bias == pytest.approx(mean, abs=np.deg2rad(0.02))
