@@ -20,6 +20,7 @@ from backend.cli.field_gyration import GYRATION, circling, heard_circling
 from backend.cli.field_legs import Listens, flown, listened
 from backend.cli.field_rivals import RIVALS
 from backend.events import BearingMeasured, BeliefUpdated, CraftSource, HeardOnTheWay
+from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
 from backend.search.planning import decide, foreseen
 from backend.search.sector import (
@@ -48,6 +49,7 @@ from planner.geometry import bounds
 from planner.motion import flight_time, turn_between
 from planner.types import FullMotion
 
+CRAFT_ID = "craft-1"
 HOME = Place(50.6234, 7.2046)
 SETTLE_S = 4.0
 """After a turn, before the craft flies on."""
@@ -110,7 +112,7 @@ PLANNERS = (*OURS, *RIVALS, GYRATION)
 
 
 def mission_of(options: FieldOptions) -> MissionSpec:
-    """The suggested mission; all planners measure and claim alike."""
+    """The suggested mission, its craft's first; all planners measure and claim alike."""
     spec = suggested_mission(HOME)
     sensor = spec.sensor.model_copy(
         update={
@@ -122,6 +124,8 @@ def mission_of(options: FieldOptions) -> MissionSpec:
             "swing_on_the_way": options.listens == "way_swinging",
         }
     )
+    if options.errors == "joint":
+        sensor = sensor.model_copy(update={"learned": errors_now((), sensor, CRAFT_ID, options.antenna)})
     own = spec.planner if options.planner == "crossfix" else PlannerSpec(estimator=spec.planner.estimator)
     return spec.model_copy(update={"sensor": sensor, "planner": own})
 
@@ -213,7 +217,7 @@ class FieldStudy:
             here, nose_deg = (float(way.x[-1]), float(way.y[-1])), float(way.nose_deg[-1])
             time_s += circle_s
             circles += 1
-            source = CraftSource(craft_id="craft-1")
+            source = CraftSource(craft_id=CRAFT_ID)
             taken = Taken(self.task.emitter_id, source, f"sweep-{circles}", circles, 1)
             found = sweep_fact(taken, self.spec.sensor, sweep, reading, circle_s)
             if isinstance(found, BearingMeasured):
@@ -309,7 +313,7 @@ class FieldStudy:
             turned += decided.by_deg
         taken = Taken(
             self.task.emitter_id,
-            CraftSource(craft_id="craft-1"),
+            CraftSource(craft_id=CRAFT_ID),
             f"sweep-{number}",
             number + 1,
             1,

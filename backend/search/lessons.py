@@ -23,7 +23,7 @@ from backend.spec import LearnedErrors, MissionSpec, SensorSpec
 from hardware.reasons.antenna import AntennaAgrees
 from planner.belief.joint import JointBelief
 from planner.belief.learning import bias_at, evidence_at, flight_evidence, learned
-from planner.belief.source_errors import ErrorPrior, evenly_spread
+from planner.belief.source_errors import ErrorPrior
 from planner.types import Bearing, FloatArray
 
 CHECK_SIGMA_DEG = 3.0
@@ -138,18 +138,12 @@ def _said(values: FloatArray, log: FloatArray) -> tuple[Said, ...]:
     return tuple(Said(float(value), float(one) - best) for value, one in zip(values, log, strict=True))
 
 
-def errors_now(
-    lessons: Sequence[Lesson], sensor: SensorSpec, craft_id: str, antenna: str, *, shared: bool = False
-) -> LearnedErrors:
-    """What a mission with this sensor starts from, after these flights (oldest first) of the craft and antenna.
-
-    shared: by the beliefs about several emitters, which measure a compass well enough for the prior's shape to count.
-    """
+def errors_now(lessons: Sequence[Lesson], sensor: SensorSpec, craft_id: str, antenna: str) -> LearnedErrors:
+    """What a mission with this sensor starts from, after these flights (oldest first) of the craft and antenna."""
     unknown = unknown_errors(sensor.outlier_probability)
     newest = lessons[-LESSONS_KEPT:]
     evidence = [_evidence_for(one, sensor.bearing_offset_deg, unknown) for one in newest]
-    prior = learned(evidence, unknown)
-    return learned_errors(evenly_spread(prior) if shared else prior, len(newest), craft_id, antenna)
+    return learned_errors(learned(evidence, unknown), len(newest), craft_id, antenna)
 
 
 def bias_left(one: Lesson, offset_deg: float) -> float:
@@ -196,7 +190,7 @@ def knowing(spec: MissionSpec, lessons: Sequence[Lesson], craft_id: str, antenna
     """The specification with what the flights taught; one with independent errors stays as it is."""
     sensor, known = spec.sensor, None
     if sensor.bearing_errors == "joint":
-        known = errors_now(lessons, sensor, craft_id, antenna, shared=bool(spec.sharing))
+        known = errors_now(lessons, sensor, craft_id, antenna)
     return spec if known == sensor.learned else spec.having_learned(known)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from backend.spec import LearnedErrors, SensorSpec
 from planner.belief.joint import UNKNOWN_SOURCE
-from planner.belief.source_errors import ErrorPrior
+from planner.belief.source_errors import ErrorPrior, evenly_spread
 
 FEWEST_OUTLIERS = 0.01
 MOST_OUTLIERS = 0.6
@@ -22,37 +22,44 @@ MOST_OUTLIERS = 0.6
 SCALES, SCALE_WEIGHTS = (0.5, 1.0, 1.45), (0.15, 0.63, 0.22)
 """Of the stated sigmas. One flight's bearings agree by luck too often to tell a sensor that is better than it says, so
 this has little weight until flights have taught it."""
-RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.36, 0.06, 0.33)
-"""Of the specified outlier probability; the mean is nine tenths of that. From two bearings nobody sees an outlier: a
-claim after two takes a source whose flights taught that it has hardly any."""
+RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 1.0, 2.0, 5.0), (0.066, 0.169, 0.338, 0.056, 0.311, 0.06)
+"""Of the specified outlier probability; the mean is a little more than that. From two bearings nobody sees an outlier:
+a claim after two takes a source whose flights taught that it has hardly any. The last is of a flight among echoes."""
 
-
-RATES_BEFORE, RATE_WEIGHTS_BEFORE = (0.03, 0.2, 0.5, 2.0), (0.07, 0.18, 0.42, 0.33)
-"""Of sources of which nothing is known, in specifications whose learned errors compare as many rates: between 0.5 and 2
-flights with 8 % of outliers learned 18 %."""
+RATES_BEFORE = {
+    4: ((0.03, 0.2, 0.5, 2.0), (0.07, 0.18, 0.42, 0.33)),
+    5: ((0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.36, 0.06, 0.33)),
+}
+"""And the weights, of sources of which nothing is known, by how many rates the learned errors of a specification
+compare: journals fold to what they were."""
 
 
 def unknown_errors(outlier_probability: float) -> ErrorPrior:
     """Of a source of which nothing is known, with values that leave room to learn."""
-    rates, weights = (RATES, RATE_WEIGHTS) if outlier_probability > 0.0 else ((0.03,), (1.0,))
-    prior = replace(UNKNOWN_SOURCE, scale=np.array(SCALES), scale_weight=np.array(SCALE_WEIGHTS))
-    return _with_rates(prior, rates, weights, outlier_probability or 0.1)
+    return evenly_spread(_unknown(RATES, RATE_WEIGHTS, outlier_probability))
 
 
-def _with_rates(
-    prior: ErrorPrior, rates: Sequence[float], weights: Sequence[float], outlier_probability: float
-) -> ErrorPrior:
+def _unknown(rates: Sequence[float], weights: Sequence[float], outlier_probability: float) -> ErrorPrior:
+    if outlier_probability == 0.0:
+        rates, weights, outlier_probability = (0.03,), (1.0,), 0.1
     rate = np.minimum(np.array(rates) * outlier_probability, MOST_OUTLIERS)
-    return replace(prior, rate=rate, rate_weight=np.array(weights))
+    return replace(
+        UNKNOWN_SOURCE,
+        scale=np.array(SCALES),
+        scale_weight=np.array(SCALE_WEIGHTS),
+        rate=rate,
+        rate_weight=np.array(weights),
+    )
 
 
 def priors_of(sensor: SensorSpec) -> tuple[dict[str, ErrorPrior], ErrorPrior]:
     """In a mission with this specification: of the sources that are known, by name, and of any other."""
     if sensor.learned is None:
         return {}, _first_prior(sensor.outlier_probability)
-    others = unknown_errors(sensor.outlier_probability)
-    if len(sensor.learned.rate) == len(RATES_BEFORE):
-        others = _with_rates(others, RATES_BEFORE, RATE_WEIGHTS_BEFORE, sensor.outlier_probability)
+    before = RATES_BEFORE.get(len(sensor.learned.rate))
+    others = (
+        unknown_errors(sensor.outlier_probability) if before is None else _unknown(*before, sensor.outlier_probability)
+    )
     return {f"craft:{sensor.learned.craft_id}": prior_in(sensor.learned)}, others
 
 

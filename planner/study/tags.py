@@ -14,7 +14,7 @@ import numpy as np
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
 from planner.belief.shared_source import with_shared_errors
-from planner.belief.source_errors import ErrorPrior, evenly_spread
+from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.motion import flight_time
 from planner.options import FIELD, PlannerOptions
@@ -63,7 +63,6 @@ def tags_missions(
     if row not in TAGS:
         raise StudyError(f"there is no row {row!r}: choose one of {', '.join(TAGS)}")
     known = prior or ErrorPrior()
-    known = evenly_spread(known) if shared else known
     for seed in seeds:
         yield fly_tags(
             scenario("field"),

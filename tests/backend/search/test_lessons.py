@@ -206,10 +206,15 @@ def test_lessons_of_before_count_their_three_values_one_by_one() -> None:
 
 def test_other_sources_are_assumed_to_be_what_they_were_when_the_mission_was_written() -> None:
     learned = now([])
-    before = learned.model_copy(update={"rate": [0.003, 0.02, 0.05, 0.2], "rate_weight": [0.07, 0.18, 0.42, 0.33]})
-    rates = [priors_of(JOINT.model_copy(update={"learned": one}))[1].rate.tolist() for one in (before, learned)]
-    assert rates[0] == pytest.approx([0.003, 0.02, 0.05, 0.2])
-    assert rates[1] == pytest.approx([0.003, 0.02, 0.05, 0.1, 0.2])
+    first = learned.model_copy(update={"rate": [0.003, 0.02, 0.05, 0.2], "rate_weight": [0.07, 0.18, 0.42, 0.33]})
+    second = learned.model_copy(update={"rate": learned.rate[:5], "rate_weight": [0.2] * 5})
+    others = [priors_of(JOINT.model_copy(update={"learned": one}))[1] for one in (first, second, learned)]
+    assert others[0].rate == pytest.approx([0.003, 0.02, 0.05, 0.2])
+    assert others[1].rate == pytest.approx([0.003, 0.02, 0.05, 0.1, 0.2])
+    assert others[2].rate == pytest.approx([0.003, 0.02, 0.05, 0.1, 0.2, 0.5])
+    for before in others[:2]:
+        assert before.spread_weight == pytest.approx([1 / 6] * 6)
+    assert others[2].spread_weight == pytest.approx(learned.spread_weight)
 
 
 def test_a_flight_without_a_bearing_teaches_nothing() -> None:
@@ -308,8 +313,8 @@ def test_a_mission_of_before_takes_nothing_off_and_folds_to_what_it_was() -> Non
     ("change", "said"),
     [
         ({"scale": [1.0]}, "scale: 1 values, 3 weights"),
-        ({"rate_weight": [0.0, 0.0, 0.0, 0.0, 0.0]}, "rate_weight: all are zero"),
-        ({"rate": [0.0, 0.1, 0.2, 0.3, 0.4]}, "greater than 0"),
+        ({"rate_weight": [0.0] * 6}, "rate_weight: all are zero"),
+        ({"rate": [0.0, 0.1, 0.2, 0.3, 0.4, 0.5]}, "greater than 0"),
     ],
 )
 def test_knowledge_that_makes_no_sense_is_refused(change: dict[str, list[float]], said: str) -> None:
