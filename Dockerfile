@@ -16,8 +16,8 @@ RUN python3 -m venv /opt/crossfix && python3 -m venv /opt/bill
 WORKDIR /source
 COPY requirements/ requirements/
 # every package is compared with the hash that stands beside its version
-RUN /opt/crossfix/bin/pip install --quiet --no-cache-dir --disable-pip-version-check --require-hashes -r requirements/server.txt \
- && /opt/bill/bin/pip install --quiet --no-cache-dir --disable-pip-version-check --require-hashes -r requirements/audit.txt
+RUN /opt/crossfix/bin/pip install --quiet --no-cache-dir --disable-pip-version-check --no-deps --require-hashes -r requirements/server.txt \
+ && /opt/bill/bin/pip install --quiet --no-cache-dir --disable-pip-version-check --no-deps --require-hashes -r requirements/audit.txt
 COPY pyproject.toml setup.py README.md LICENSE ./
 COPY planner/ planner/
 COPY hardware/ hardware/

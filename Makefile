@@ -31,18 +31,21 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
 
-# Every package is compared with the hash that stands beside its version; what builds them is among them.
-PIP := $(BIN)/pip install --quiet --disable-pip-version-check
+# Every package is compared with the hash that stands beside its version; what builds them is among them. The lists are
+# whole: pip that looks for what they need by itself may take a newer version of a package with an extra, and refuse it.
+PIP := $(BIN)/pip install --quiet --disable-pip-version-check --no-deps
 
 $(VENV)/.installed: pyproject.toml setup.py requirements/run.txt | $(VENV)/bin/python
 	$(PIP) --require-hashes -r requirements/run.txt
-	$(PIP) --no-build-isolation --no-deps -e .
+	$(PIP) --no-build-isolation -e .
+	@$(BIN)/pip check --quiet
 	@touch $@
 
 setup-dev: $(VENV)/.installed-dev
 
 $(VENV)/.installed-dev: $(VENV)/.installed requirements/development.txt
 	$(PIP) --require-hashes -r requirements/development.txt
+	@$(BIN)/pip check --quiet
 	@touch $@
 
 frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
@@ -176,7 +179,7 @@ requirements: ## requirements/*.txt with the hashes of what constraints.txt pins
 	cd requirements && ./compile.sh $(abspath $(STAMPS)/uv/bin/uv)
 
 audit: setup-dev ## known vulnerabilities of the packages that are installed, of Python and of the page
-	$(PYTHON) -m venv $(STAMPS)/audit && $(STAMPS)/audit/bin/pip install --quiet --require-hashes -r requirements/audit.txt
+	$(PYTHON) -m venv $(STAMPS)/audit && $(STAMPS)/audit/bin/pip install --quiet --no-deps --require-hashes -r requirements/audit.txt
 	$(STAMPS)/audit/bin/pip-audit --disable-pip --require-hashes -r requirements/run.txt
 	cd frontend && npm audit --omit=dev
 
