@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import label
 
 from planner.belief.estimate import most_likely
 from planner.belief.grid import GridBelief, smallest_set
@@ -41,6 +40,8 @@ def hypotheses(
 
     Cells that touch at a corner belong together.
     """
+    from scipy.ndimage import label  # loaded with the first question, not by every start
+
     parts = np.zeros(belief.density.shape, dtype=np.int32)
     label(smallest_set(belief, share), structure=np.ones((3, 3)), output=parts)
     found = [_hypothesis(belief, bearings, parts == number) for number in range(1, int(parts.max()) + 1)]

@@ -13,7 +13,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
 
 from planner.belief.grid import (
     COARSE_CELLS,
@@ -161,6 +160,8 @@ def _weighed_at(belief: MovingBelief, folded: tuple[Bearing, ...], now: float) -
 
 def _spread_out(before: GridBelief, movement: Movement, seconds: float) -> tuple[GridBelief, FloatArray]:
     """The prior after that time, on a grid that holds where the emitter may have gone."""
+    from scipy.ndimage import gaussian_filter  # loaded by the first emitter that moves, not by every start
+
     sd = float(np.sqrt(movement.variance(seconds)))
     cells = int(np.ceil(EDGE_SIGMAS * sd / before.h))
     step = max(1, int(np.ceil((max(before.nx, before.ny) + 2 * cells) / (2 * FIRST_CELLS))))
