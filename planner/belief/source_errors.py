@@ -139,8 +139,9 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
 def bias_weights(bias: FloatArray, spacing: float, spread: FloatArray) -> FloatArray:
     """(b, t) probability of the surroundings of each node, half a spacing to each side, under N(0, spread^2)."""
     edges = np.append(bias - 0.5 * spacing, bias[-1] + 0.5 * spacing)
-    below = [[0.5 * (1.0 + erf(edge / (sqrt(2.0) * tau))) for tau in spread] for edge in edges]
-    return np.diff(np.array(below), axis=0)
+    widths = [sqrt(2.0) * tau for tau in spread]
+    below = 0.5 * (1.0 + np.array([[erf(edge / width) for width in widths] for edge in edges]))
+    return np.diff(below, axis=0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
