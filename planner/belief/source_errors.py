@@ -16,7 +16,7 @@ from math import erf, sqrt
 
 import numpy as np
 
-from planner.types import FloatArray
+from planner.types import BoolArray, FloatArray
 
 LARGEST_BIAS = np.deg2rad(27.0)
 """A bias beyond this is not looked for: 2.7 standard deviations of the worst compass."""
@@ -92,6 +92,14 @@ class Nodes:
         if self.together is not None:
             return self.together
         return self.scale_weight[:, None, None] * self.rate_weight[:, None] * self.bias_weight
+
+    def among(self, which: BoolArray) -> Nodes:
+        """From the first of these values of the bias (b,) to the last, their weights as they were."""
+        if self.together is not None:
+            raise ValueError("the errors hang together already")
+        kept = np.flatnonzero(which)
+        where = slice(int(kept[0]), int(kept[-1]) + 1)
+        return replace(self, bias=self.bias[where], bias_weight=self.bias_weight[where])
 
     def knowing(self, log_evidence: FloatArray) -> Nodes:
         """Weighed with further evidence (k, e, b) of the errors; values of the bias that it leaves no mass at the ends
