@@ -64,13 +64,13 @@ class Weigher:
     def log(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """As there."""
         found = np.empty(len(x))
-        _log_evidence(*_places(x, y), self._known, found)
+        _log_evidence(_plain(x), _plain(y), self._known, found)
         return found
 
     def shared_out(self, x: FloatArray, y: FloatArray, mass: FloatArray) -> SharedOut:
         """As there."""
         found, mean = np.zeros_like(self._known.prior), np.empty(len(x))
-        _shared_out_over(*_places(x, y, mass), self._known, found, mean)
+        _shared_out_over(_plain(x), _plain(y), _plain(mass), self._known, found, mean)
         table = found.reshape(self._nodes.weight.shape)
         return SharedOut(table.sum(axis=(0, 1)), table.sum(axis=(1, 2)), table.sum(axis=(0, 2)), mean)
 
@@ -86,7 +86,7 @@ def evidence(
         np.empty((cells, len(nodes.scale))),
         np.empty((cells, len(nodes.rate))),
     )
-    _evidence(*_places(x, y), _prepared(seen, nodes, nodes.weight, stretches), out)
+    _evidence(_plain(x), _plain(y), _prepared(seen, nodes, nodes.weight, stretches), out)
     return out
 
 
@@ -101,12 +101,12 @@ def node_evidence(
     """See evidence.node_evidence."""
     known = _prepared(seen, nodes, np.ones(nodes.weight.shape), stretches)
     found = np.empty_like(known.prior)
-    top = _node_evidence(*_places(x, y, log), known, found)
+    top = _node_evidence(_plain(x), _plain(y), _plain(log), known, found)
     return (top + np.log(np.maximum(found, np.finfo(float).tiny))).reshape(nodes.weight.shape)
 
 
-def _places(*arrays: FloatArray) -> tuple[FloatArray, ...]:
-    return tuple(np.ascontiguousarray(one, dtype=float) for one in arrays)
+def _plain(array: FloatArray) -> FloatArray:
+    return np.ascontiguousarray(array, dtype=float)
 
 
 def _prepared(seen: Sightings, nodes: Nodes, weight: FloatArray, stretches: Sequence[Stretch]) -> Prepared:
@@ -199,20 +199,65 @@ def _weighed_at_once(row, lower, upper, below, above):
 
 
 @jit
+def _copied(row, from_row):
+    for b in range(len(row)):
+        row[b] = from_row[b]
+
+
+@jit
+def _times(row, factor):
+    for b in range(len(row)):
+        row[b] *= factor
+
+
+@jit
+def _largest(row):
+    top = 0.0
+    for b in range(len(row)):
+        top = max(top, row[b])
+    return top
+
+
+@jit
+def _sum(row):
+    total = 0.0
+    for b in range(len(row)):
+        total += row[b]
+    return total
+
+
+@jit
+def _dot(row, other):
+    total = 0.0
+    for b in range(len(row)):
+        total += row[b] * other[b]
+    return total
+
+
+@jit
+def _added(found, row, apart, weight):
+    for b in range(len(row)):
+        found[b] += weight * (row[b] - apart)
+
+
+@jit
+def _added_beside(found, row, prior, apart, weight):
+    for b in range(len(row)):
+        found[b] += weight * (row[b] - apart * prior[b])
+
+
+@jit
 def _rescaled(table, low, high, apart, shares):
     """Each row times its rate's share, then all over the largest entry; returns its logarithm."""
     top = 0.0
     for r in range(table.shape[0]):
         share = shares[r % len(shares)]
         apart[r] *= share
-        top = max(top, apart[r])
-        for b in range(low, high):
-            table[r, b] *= share
-            top = max(top, table[r, b])
+        _times(table[r, low:high], share)
+        top = max(top, apart[r], _largest(table[r, low:high]))
     for r in range(table.shape[0]):
         apart[r] /= top
-        for b in range(low, high):
-            table[r, b] /= top
+        _times(table[r, low:high], 1.0 / top)
     return np.log(top)
 
 
@@ -307,8 +352,7 @@ def _of_cell(x, y, known, past, low, high, apart, table, density, sums):
     seen, log = known.seen, known.outliers
     apart[:] = 1.0
     for r in range(table.shape[0]):
-        for b in range(low, high):
-            table[r, b] = known.prior[r, b]
+        _copied(table[r, low:high], known.prior[r, low:high])
     for i in range(len(seen.x)):
         first = seen.first[i]
         if _last(seen, i) - first == 1:
@@ -321,8 +365,7 @@ def _of_cell(x, y, known, past, low, high, apart, table, density, sums):
     for r in range(table.shape[0]):
         share = known.shares[1, r % rates]
         apart[r] *= share
-        for b in range(low, high):
-            table[r, b] *= share
+        _times(table[r, low:high], share)
     if len(known.on_way.worth) > 0:
         apart[:] = 0.0
         log += weigh_stretches(x, y, known.on_way, known.bias, known.spacing, known.scale, known.rate, sums, table)
@@ -335,9 +378,7 @@ def _whole(known, low, high, apart, table):
     whole = 0.0
     for r in range(table.shape[0]):
         reached = known.before[r, high] - known.before[r, low]
-        whole += apart[r] * (known.before[r, -1] - reached)
-        for b in range(low, high):
-            whole += table[r, b]
+        whole += apart[r] * (known.before[r, known.before.shape[1] - 1] - reached) + _sum(table[r, low:high])
     return whole
 
 
@@ -381,7 +422,13 @@ def _scratch(known):
     """past, apart, table, density and sums as `_of_cell` takes them."""
     count = len(known.bias)
     sums = np.empty((SUMS, coarse_nodes(count, known.spacing)))
-    return np.empty(len(known.seen.angle)), np.empty(len(known.prior)), np.empty_like(known.prior), np.empty(count), sums
+    return (
+        np.empty(len(known.seen.angle)),
+        np.empty(len(known.prior)),
+        np.empty_like(known.prior),
+        np.empty(count),
+        sums,
+    )
 
 
 @entry
@@ -406,11 +453,11 @@ def _shared_out_over(x, y, mass, known, found, mean):
         whole, bias = _whole(known, low, high, apart, table), 0.0
         for r in range(len(apart)):
             reached = known.moment[r, high] - known.moment[r, low]
-            bias += apart[r] * (known.moment[r, -1] - reached)
+            bias += apart[r] * (known.moment[r, known.moment.shape[1] - 1] - reached)
+            bias += _dot(table[r, low:high], known.bias[low:high])
             alone[r] += mass[c] / whole * apart[r]
-            for b in range(low, high):
-                bias += known.bias[b] * table[r, b]
-                found[r, b] += mass[c] / whole * (table[r, b] - apart[r] * known.prior[r, b])
+            within = table[r, low:high]
+            _added_beside(found[r, low:high], within, known.prior[r, low:high], apart[r], mass[c] / whole)
         mean[c] = bias / whole
     for r in range(len(alone)):
         for b in range(found.shape[1]):
@@ -431,13 +478,13 @@ def _evidence(x, y, known, out):
         out.scale[c] = 0.0
         out.rate[c] = 0.0
         for r in range(len(apart)):
-            row = 0.0
-            for b in range(len(known.bias)):
-                share = (table[r, b] if low <= b < high else apart[r] * known.prior[r, b]) / whole
-                row += share
-                out.bias[c, b] += share
-            out.scale[c, r // rates] += row
-            out.rate[c, r % rates] += row
+            reached = known.before[r, high] - known.before[r, low]
+            row = apart[r] * (known.before[r, known.before.shape[1] - 1] - reached) + _sum(table[r, low:high])
+            out.scale[c, r // rates] += row / whole
+            out.rate[c, r % rates] += row / whole
+            _added(out.bias[c, :], known.prior[r, :], 0.0, apart[r] / whole)
+            within = table[r, low:high]
+            _added_beside(out.bias[c, low:high], within, known.prior[r, low:high], apart[r], 1.0 / whole)
 
 
 @entry
@@ -460,8 +507,7 @@ def _node_evidence(x, y, before, known, found):
         weight = np.exp(log - top)
         for r in range(len(apart)):
             alone[r] += weight * apart[r]
-            for b in range(low, high):
-                found[r, b] += weight * (table[r, b] - apart[r])
+            _added(found[r, low:high], table[r, low:high], apart[r], weight)
     for r in range(len(alone)):
         found[r] += alone[r]
     return top

@@ -49,9 +49,15 @@ def with_shared_errors(beliefs: Sequence[JointBelief], threads: int = 1) -> tupl
     grid = common_nodes([beliefs[i] for i in heard], source)
     grid = grid.among(_in_question(grid, [beliefs[i].errors_of(source) for i in heard]))
     found = list(beliefs)
+
+    def tells(i: int) -> FloatArray:
+        return node_evidence(beliefs[i], source, grid)
+
     with ThreadPoolExecutor(threads) as pool:
-        told = told_by_others(list(pool.map(lambda i: node_evidence(beliefs[i], source, grid), heard)))
-        knowing = [replace(beliefs[i], narrowed={source: grid.knowing(said)}) for i, said in zip(heard, told, strict=True)]
+        told = told_by_others(list(pool.map(tells, heard)))
+        knowing = [
+            replace(beliefs[i], narrowed={source: grid.knowing(said)}) for i, said in zip(heard, told, strict=True)
+        ]
         for i, belief in zip(heard, pool.map(settled, knowing), strict=True):
             found[i] = belief
     return tuple(found)
@@ -61,7 +67,7 @@ def _in_question(grid: Nodes, known: Sequence[SourceErrors | None]) -> BoolArray
     """(b,) the values of the bias that what the others tell may leave any emitter: those beside them hold so little
     that `Nodes.knowing` leaves them out.
 
-    By each emitter's own belief, m of them: with p the least weight of a scale and a rate together,
+    By each emitter's own belief, m of them: with p the least weight that a scale and a rate have together,
     sum_se p(s, e) prod_j Z_j(b, s, e) is at most p^(1 - m) times prod_j sum_se p(s, e) Z_j(b, s, e), which is known.
     """
     log = np.zeros((len(known), len(grid.bias)))
@@ -71,9 +77,9 @@ def _in_question(grid: Nodes, known: Sequence[SourceErrors | None]) -> BoolArray
         own = errors.nodes
         tiny = np.finfo(float).tiny
         log[j] = np.interp(grid.bias, own.bias, np.log(np.maximum(errors.bias_mass, tiny) / own.bias_weight))
-    least = float(grid.scale_weight.min() * grid.rate_weight.min())
+    least = math.prod(float(weight[weight > 0.0].min()) for weight in (grid.scale_weight, grid.rate_weight))
     within = -math.log(NEGLIGIBLE_WEIGHT) - len(known) * math.log(least) + SPARE
-    told = np.log(grid.bias_weight) + np.stack(told_by_others(log))
+    told = np.log(grid.bias_weight) + np.stack(told_by_others(list(log)))
     return (told > told.max(axis=1, keepdims=True) - within).any(axis=0)
 
 
