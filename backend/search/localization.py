@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
+from threading import RLock
 
 import numpy as np
 from shapely import Point, unary_union
@@ -95,6 +97,7 @@ class Localization:
     _folds: dict[tuple[Bearing, ...], GridBelief] = field(
         default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
     )
+    _folding: AbstractContextManager[object] = field(default_factory=RLock, repr=False, compare=False)
     _after: dict[tuple[Silence, ...], Localization] = field(default_factory=lambda: {}, repr=False, compare=False)
     _heard: dict[tuple[tuple[Bearing, ...], tuple[Stretch, ...]], GridBelief] = field(
         default_factory=lambda: {}, repr=False, compare=False
@@ -187,17 +190,19 @@ class Localization:
         return found
 
     def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
-        """Bearing by bearing, in order: what was folded for one bearing less is gone on from."""
+        """Bearing by bearing, in order: what was folded for one bearing less is gone on from. One thread at a time:
+        beliefs of emitters that share a source's errors ask for each other."""
         if not bearings:
             return self.prior
-        found = self._folds.get(bearings)
-        if found is None:
-            before = self._folded(bearings[:-1])
-            found = self._with(before, bearings)
-            if len(self._folds) >= FOLDS_KEPT:
-                self._folds.clear()
-            self._folds[bearings] = found
-        return found
+        with self._folding:
+            found = self._folds.get(bearings)
+            if found is None:
+                before = self._folded(bearings[:-1])
+                found = self._with(before, bearings)
+                if len(self._folds) >= FOLDS_KEPT:
+                    self._folds.clear()
+                self._folds[bearings] = found
+            return found
 
     def _with(self, before: GridBelief, bearings: tuple[Bearing, ...]) -> GridBelief:
         """The last of the bearings taken in. A moving emitter's belief is about the end of the newest turn."""

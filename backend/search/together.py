@@ -24,6 +24,9 @@ from planner.types import Bearing
 SHARED_KEPT = 8
 """Times at which the beliefs about all emitters are kept: a turn's bearings come together, and beliefs one by one."""
 
+THREADS = 2
+"""That weigh emitters at once where one waits for all of them."""
+
 Known = tuple[str, tuple[Silence, ...], tuple[Bearing, ...], tuple[Stretch, ...]]
 """What the belief about an emitter stands on by itself."""
 
@@ -73,7 +76,8 @@ class Together:
             key = tuple((name, one.silences, one.folded, one.stretches) for name in names for one in (beliefs[name],))
             found = self._found.get(key)
             if found is None:
-                found = dict(zip(names, with_shared_errors([beliefs[name] for name in names]), strict=True))
+                shared = with_shared_errors([beliefs[name] for name in names], THREADS)
+                found = dict(zip(names, shared, strict=True))
                 while len(self._found) >= SHARED_KEPT:
                     del self._found[next(iter(self._found))]
                 self._found[key] = found

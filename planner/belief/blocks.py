@@ -25,18 +25,17 @@ cells tell little, either way."""
 
 
 class Places(NamedTuple):
-    """x, y (c,) of the blocks that were not split, m ENU; their mass (c,), which sums to 1; parts: what else `weigh`
-    found of each; density: (ny, nx) the mass of the cells."""
+    """x, y (c,) of the blocks that were not split, m ENU; their mass (c,), which sums to 1; density: (ny, nx) the mass
+    of the cells."""
 
     x: FloatArray
     y: FloatArray
     mass: FloatArray
-    parts: tuple[FloatArray, ...]
     density: FloatArray
 
 
-Weigh = Callable[[FloatArray, FloatArray], tuple[FloatArray, ...]]
-"""x, y (c,) to the logarithm (c,) of the likelihood there, then to anything else, (c, *) each."""
+Weigh = Callable[[FloatArray, FloatArray], FloatArray]
+"""x, y (c,) to the logarithm (c,) of the likelihood there."""
 
 
 def weighed_in_blocks(prior: FloatArray, x0: float, y0: float, h: float, weigh: Weigh) -> Places:
@@ -48,26 +47,25 @@ def weighed_in_blocks(prior: FloatArray, x0: float, y0: float, h: float, weigh: 
     padded = np.pad(prior, ((0, -ny % side), (0, -nx % side)))
     log: FloatArray = np.full((padded.shape[0] // side, padded.shape[1] // side), -np.inf)
     asked: BoolArray = np.ones(log.shape, dtype=bool)
-    found: list[tuple[FloatArray, ...]] = []
+    found: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
     while True:
         mass = padded.reshape(log.shape[0], side, log.shape[1], side).sum(axis=(1, 3))
         asked &= mass > 0.0
         rows, columns = np.nonzero(asked)
         x, y = centres(x0, side * h, log.shape[1])[columns], centres(y0, side * h, log.shape[0])[rows]
-        weighed = weigh(x, y)
-        log[asked] = weighed[0]
+        log[asked] = weigh(x, y)
         split = _uneven(mass, log, asked) if side > 1 else np.zeros_like(asked)
-        here: tuple[FloatArray, ...] = (x, y, mass[asked], *weighed)
-        found.append(tuple(part[~split[asked]] for part in here))
+        left = ~split[asked]
+        found.append((x[left], y[left], mass[asked][left], log[asked][left]))
         if side == 1:
             break
         side //= 2
         log, asked = log.repeat(2, axis=0).repeat(2, axis=1), split.repeat(2, axis=0).repeat(2, axis=1)
-    x, y, mass, log_of, *parts = (np.concatenate(some) for some in zip(*found, strict=True))
+    x, y, mass, log_of = (np.concatenate(some) for some in zip(*found, strict=True))
     top = log_of.max()
     mass = mass * np.exp(log_of - top)
     density = prior * np.exp(log[:ny, :nx] - top)
-    return Places(x, y, mass / mass.sum(), tuple(parts), density / density.sum())
+    return Places(x, y, mass / mass.sum(), density / density.sum())
 
 
 def _uneven(mass: FloatArray, log: FloatArray, asked: BoolArray) -> BoolArray:

@@ -70,7 +70,10 @@ def _summed(x, y, heard, k, bias, step, sums):
 @jit
 def _rescaled(table):
     """Divides by the largest of the table, and returns its logarithm."""
-    top = table.max()
+    top = 0.0
+    for r in range(table.shape[0]):
+        for b in range(table.shape[1]):
+            top = max(top, table[r, b])
     if top <= 0.0:
         return 0.0
     for r in range(table.shape[0]):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.belief import compiled_estimate
 from planner.belief.grid import GridBelief, smallest_set
 from planner.geometry import cells_hull, centres
 from planner.options import Estimator
@@ -48,18 +49,8 @@ def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: 
 
     The iteration is slow where the median is one of the heavy points: the heaviest are tried besides.
     """
-    px, py = float(mass @ x), float(mass @ y)
-    for _ in range(MEDIAN_STEPS):
-        weight = mass / np.maximum(np.hypot(x - px, y - py), tolerance)
-        weight /= weight.sum()
-        qx, qy = float(weight @ x), float(weight @ y)
-        moved = np.hypot(qx - px, qy - py)
-        px, py = qx, qy
-        if moved < tolerance:
-            break
     heaviest = np.argsort(-mass, kind="stable")[:HEAVY_POINTS]
-    tried = [(px, py), *((float(x[k]), float(y[k])) for k in heaviest)]
-    return min(tried, key=lambda at: float(mass @ np.hypot(x - at[0], y - at[1])))
+    return compiled_estimate.geometric_median(mass, x, y, heaviest, tolerance, MEDIAN_STEPS)
 
 
 def confidence_region(belief: GridBelief, share: float = 0.95) -> Ring:

@@ -47,6 +47,15 @@ class Evidence(NamedTuple):
     rate: FloatArray
 
 
+class SharedOut(NamedTuple):
+    """The errors' masses, summed over places: bias (b,), scale (k,), rate (e,). mean: (c,) rad, bias of each place."""
+
+    bias: FloatArray
+    scale: FloatArray
+    rate: FloatArray
+    mean: FloatArray
+
+
 SMALLEST_SIGMA = float(np.deg2rad(1.0))
 """A source's bearings are never taken to be better than this: neither the position nor the pattern is."""
 
@@ -92,6 +101,22 @@ def evidence(
     return Evidence(
         np.log(whole) + top[:, 0, 0, 0], mass.sum(axis=(1, 2)), mass.sum(axis=(2, 3)), mass.sum(axis=(1, 3))
     )
+
+
+class Weigher:
+    """What one source's bearings and stretches say of places, asked again and again."""
+
+    def __init__(self, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()) -> None:
+        self._known = seen, nodes, stretches
+
+    def log(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """(c,) as in `Evidence`."""
+        return evidence(x, y, *self._known).log
+
+    def shared_out(self, x: FloatArray, y: FloatArray, mass: FloatArray) -> SharedOut:
+        """mass: (c,) probability of the places by all that is known."""
+        found = evidence(x, y, *self._known)
+        return SharedOut(mass @ found.bias, mass @ found.scale, mass @ found.rate, found.bias @ self._known[1].bias)
 
 
 def node_evidence(

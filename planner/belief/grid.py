@@ -198,11 +198,12 @@ def _update_soft(belief: GridBelief, bearing: Bearing) -> GridBelief:
 def smallest_set(belief: GridBelief, share: float) -> BoolArray:
     """(ny, nx) bool: the fewest cells that hold `share` of the mass; ties go to the first cell in row order."""
     flat = belief.density.ravel()
-    order = np.argsort(-flat, kind="stable")
-    cumulative: FloatArray = np.cumsum(flat[order])
+    falling = np.sort(flat)[::-1]
+    cumulative: FloatArray = np.cumsum(falling)
     count = int(np.searchsorted(cumulative, share * float(cumulative[-1]))) + 1
-    chosen = np.zeros(flat.size, dtype=bool)
-    chosen[order[:count]] = True
+    least = falling[count - 1]
+    chosen = flat > least
+    chosen[np.flatnonzero(flat == least)[: count - int(np.count_nonzero(chosen))]] = True
     return chosen.reshape(belief.density.shape)
 
 

@@ -11,14 +11,14 @@ A joint belief is a `GridBelief`: planner, forecast and page take its mass over 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
 from planner.belief import compiled_evidence, evidence
 from planner.belief.blocks import Places, weighed_in_blocks
-from planner.belief.evidence import SMALLEST_SIGMA, Evidence, sightings
+from planner.belief.evidence import SMALLEST_SIGMA, sightings
 from planner.belief.grid import (
     COARSE_CELLS,
     MOST_CELLS,
@@ -47,6 +47,8 @@ MANY_CELLS = 128 * 128
 COARSEST_CELLS = 12
 """Cells along the longer side of the 95 % region that any grid must have."""
 DEEPEST_REFINEMENT = 16
+NO_MASS = 1e-16
+"""Of a block: all that hold less hold nothing that a sum over the places would show."""
 LEAST_DENSITY = 1e-7
 """16 nats: what a leg says is two or three."""
 
@@ -99,7 +101,8 @@ def unheard(
     belief: JointBelief, silences: Sequence[Silence], detection: DetectionModel = UNKNOWN_EMITTER
 ) -> JointBelief:
     """The belief, so far without bearings, with these silences instead of those that it had."""
-    return _weighed(replace(belief, silences=tuple(silences), detection=detection), compiled_evidence.evidence)
+    belief = replace(belief, silences=tuple(silences), detection=detection)
+    return _weighed(belief, _sources(belief, compiled_evidence.Weigher))[0]
 
 
 def heard_on_the_way(belief: JointBelief, stretches: Sequence[Stretch]) -> JointBelief:
@@ -108,7 +111,8 @@ def heard_on_the_way(belief: JointBelief, stretches: Sequence[Stretch]) -> Joint
     Last of all: cells that the bearings leave LEAST_DENSITY of the likeliest are looked at no more.
     """
     if not belief.folded:
-        return _weighed(replace(belief, stretches=tuple(stretches)), compiled_evidence.evidence)
+        belief = replace(belief, stretches=tuple(stretches))
+        return _weighed(belief, _sources(belief, compiled_evidence.Weigher))[0]
     prior = np.where(belief.density > LEAST_DENSITY * belief.density.max(), belief.prior, 0.0)
     return settled(replace(belief, stretches=tuple(stretches), prior=prior))
 
@@ -119,25 +123,28 @@ def log_prior(belief: JointBelief, rows: IntArray, columns: IntArray, x: FloatAr
     return log + silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else log
 
 
-Weighing = Callable[..., Evidence]
-"""`evidence.evidence` or its compiled twin."""
+Weigher = compiled_evidence.Weigher | evidence.Weigher
+Weighing = type[Weigher]
 
 
-def update_joint(belief: JointBelief, bearing: Bearing, weighing: Weighing = compiled_evidence.evidence) -> JointBelief:
+def update_joint(belief: JointBelief, bearing: Bearing, weighing: Weighing = compiled_evidence.Weigher) -> JointBelief:
     """Bayes' rule for one bearing more (3.26-3.28), then crop to what holds mass and refine where that is coarse."""
     validate_bearing(bearing)
     folded = (*belief.folded, bearing)
     return settled(replace(belief, folded=folded, bearings=len(folded), copies=1), weighing)
 
 
-def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.evidence) -> JointBelief:
+def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.Weigher) -> JointBelief:
     """All that is known weighed again on the belief's cells, cropped and refined."""
-    belief = _cropped(_weighed(belief, weighing))
+    sources = _sources(belief, weighing)
+    belief, places = _weighed(belief, sources)
+    belief = _cropped(belief)
     for _ in range(DEEPEST_REFINEMENT):
         if not _coarse(belief):
             break
-        belief = _cropped(_weighed(_refined(belief), weighing))
-    return belief
+        belief, places = _weighed(_refined(belief), sources)
+        belief = _cropped(belief)
+    return replace(belief, errors=tuple(_errors(one, places) for one in sources if one.bearings))
 
 
 def error_nodes(prior: ErrorPrior, taken: Sequence[Bearing], stretches: Sequence[Stretch]) -> Nodes:
@@ -176,47 +183,54 @@ def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatA
     return x, y, log
 
 
-def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
-    """All bearings on the cells of the grid: mass of each cell, and of the errors of each source."""
-    told = told_by(belief)
-    sources = [
-        (
-            sightings(taken),
-            belief.narrowed.get(source) or error_nodes(belief.prior_of(source), taken, belief.stretches_of(source)),
-            belief.stretches_of(source),
-        )
-        for source, taken in told.items()
-    ]
+@dataclass(frozen=True, slots=True, eq=False)
+class _Source:
+    """bearings: how many it took. nodes: on which its errors are summed. weigher: of all that it told."""
 
-    def weigh(x: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
-        found = [weighing(x, y, *source) for source in sources]
+    name: str
+    bearings: int
+    prior: ErrorPrior
+    nodes: Nodes
+    weigher: Weigher
+
+
+def _sources(belief: JointBelief, weighing: Weighing) -> list[_Source]:
+    found: list[_Source] = []
+    for name, taken in told_by(belief).items():
+        prior, stretches = belief.prior_of(name), belief.stretches_of(name)
+        grid = belief.narrowed.get(name) or error_nodes(prior, taken, stretches)
+        found.append(_Source(name, len(taken), prior, grid, weighing(sightings(taken), grid, stretches)))
+    return found
+
+
+def _weighed(belief: JointBelief, sources: Sequence[_Source]) -> tuple[JointBelief, Places]:
+    """The mass of each cell of the grid by all that is known, and the blocks of cells in which it was found."""
+
+    def weigh(x: FloatArray, y: FloatArray) -> FloatArray:
         log = silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else np.zeros(len(x))
-        return (sum((one.log for one in found), start=log), *(part for one in found for part in one[1:]))
+        return sum((one.weigher.log(x, y) for one in sources), start=log)
 
     places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh)
-    errors = tuple(
-        _errors(source, len(taken), belief.prior_of(source), grid, places, *places.parts[3 * i : 3 * i + 3])
-        for i, ((source, taken), (_, grid, _)) in enumerate(zip(told.items(), sources, strict=True))
-        if taken
-    )
-    return replace(belief, density=places.density, errors=errors)
+    return replace(belief, density=places.density), places
 
 
-def _errors(
-    source: str,
-    bearings: int,
-    prior: ErrorPrior,
-    grid: Nodes,
-    places: Places,
-    bias: FloatArray,
-    scale: FloatArray,
-    rate: FloatArray,
-) -> SourceErrors:
+def _errors(source: _Source, places: Places) -> SourceErrors:
     """The errors' masses, summed over the places."""
-    mass, mean = places.mass, bias @ grid.bias
-    off = mass * (mean - float(mass @ mean))
-    with_place = np.array([off @ places.x, off @ places.y])
-    return SourceErrors(source, bearings, prior, grid, mass @ bias, mass @ scale, mass @ rate, with_place)
+    held = places.mass > NO_MASS
+    x, y, mass = places.x[held], places.y[held], places.mass[held]
+    found = source.weigher.shared_out(x, y, mass)
+    off = mass * (found.mean - float(mass @ found.mean))
+    with_place = np.array([off @ x, off @ y])
+    return SourceErrors(
+        source.name,
+        source.bearings,
+        source.prior,
+        source.nodes,
+        found.bias,
+        found.scale,
+        found.rate,
+        with_place,
+    )
 
 
 def _cropped(belief: JointBelief) -> JointBelief:
@@ -264,6 +278,3 @@ def _corrected(errors: SourceErrors | None, bearing: Bearing) -> Bearing:
     peaks = tuple(replace(peak, angle=peak.angle - errors.bias) for peak in bearing.peaks)
     sigma = float(np.hypot(errors.scale * max(bearing.sigma, SMALLEST_SIGMA), errors.bias_sd))
     return replace(bearing, angle=bearing.angle - errors.bias, sigma=sigma, peaks=peaks, profile=())
-
-
-reference_weighing: Weighing = evidence.evidence

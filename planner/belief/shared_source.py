@@ -15,8 +15,10 @@ Z_j too, and no less is known of them than before.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -24,29 +26,61 @@ import numpy as np
 from planner.belief import compiled_evidence
 from planner.belief.evidence import sightings
 from planner.belief.joint import JointBelief, by_source, error_nodes, places_besides, settled
-from planner.belief.source_errors import Nodes
-from planner.types import Bearing, FloatArray
+from planner.belief.source_errors import NEGLIGIBLE_WEIGHT, Nodes, SourceErrors
+from planner.types import Bearing, BoolArray, FloatArray
 
 USED_UP = 2
 """Bearings that an emitter's place takes."""
 
+SPARE = 7.0
+"""Nats: an emitter's own nodes are wider apart than the common ones."""
 
-def with_shared_errors(beliefs: Sequence[JointBelief]) -> tuple[JointBelief, ...]:
+
+def with_shared_errors(beliefs: Sequence[JointBelief], threads: int = 1) -> tuple[JointBelief, ...]:
     """The beliefs about each emitter, in their order, with what the others tell of one source of bearings.
 
     beliefs: each with its own bearings alone, the same known before of a source's errors. One that the source did not
-    hear stays as it is, and so do all when it heard one of them only.
+    hear stays as it is, and so do all when it heard one of them only. threads: emitters weighed at once.
     """
     source = common_source(beliefs)
     if source is None:
         return tuple(beliefs)
     heard = [i for i, belief in enumerate(beliefs) if any(b.source == source for b in belief.folded)]
     grid = common_nodes([beliefs[i] for i in heard], source)
-    told = told_by_others([node_evidence(beliefs[i], source, grid) for i in heard])
+    grid = grid.among(_in_question(grid, [beliefs[i].errors_of(source) for i in heard]))
     found = list(beliefs)
-    for i, evidence in zip(heard, told, strict=True):
-        found[i] = settled(replace(beliefs[i], narrowed={source: grid.knowing(evidence)}))
+
+    def tells(i: int) -> FloatArray:
+        return node_evidence(beliefs[i], source, grid)
+
+    with ThreadPoolExecutor(threads) as pool:
+        told = told_by_others(list(pool.map(tells, heard)))
+        knowing = [
+            replace(beliefs[i], narrowed={source: grid.knowing(said)}) for i, said in zip(heard, told, strict=True)
+        ]
+        for i, belief in zip(heard, pool.map(settled, knowing), strict=True):
+            found[i] = belief
     return tuple(found)
+
+
+def _in_question(grid: Nodes, known: Sequence[SourceErrors | None]) -> BoolArray:
+    """(b,) the values of the bias that what the others tell may leave any emitter: those beside them hold so little
+    that `Nodes.knowing` leaves them out.
+
+    By each emitter's own belief, m of them: with p the least weight that a scale and a rate have together,
+    sum_se p(s, e) prod_j Z_j(b, s, e) is at most p^(1 - m) times prod_j sum_se p(s, e) Z_j(b, s, e), which is known.
+    """
+    log = np.zeros((len(known), len(grid.bias)))
+    for j, errors in enumerate(known):
+        if errors is None:
+            return np.ones(len(grid.bias), dtype=bool)
+        own = errors.nodes
+        tiny = np.finfo(float).tiny
+        log[j] = np.interp(grid.bias, own.bias, np.log(np.maximum(errors.bias_mass, tiny) / own.bias_weight))
+    least = math.prod(float(weight[weight > 0.0].min()) for weight in (grid.scale_weight, grid.rate_weight))
+    within = -math.log(NEGLIGIBLE_WEIGHT) - len(known) * math.log(least) + SPARE
+    told = np.log(grid.bias_weight) + np.stack(told_by_others(list(log)))
+    return (told > told.max(axis=1, keepdims=True) - within).any(axis=0)
 
 
 def common_source(beliefs: Sequence[JointBelief]) -> str | None:

@@ -16,7 +16,7 @@ from math import erf, sqrt
 
 import numpy as np
 
-from planner.types import FloatArray
+from planner.types import BoolArray, FloatArray
 
 LARGEST_BIAS = np.deg2rad(27.0)
 """A bias beyond this is not looked for: 2.7 standard deviations of the worst compass."""
@@ -93,6 +93,14 @@ class Nodes:
             return self.together
         return self.scale_weight[:, None, None] * self.rate_weight[:, None] * self.bias_weight
 
+    def among(self, which: BoolArray) -> Nodes:
+        """From the first of these values of the bias (b,) to the last, their weights as they were."""
+        if self.together is not None:
+            raise ValueError("the errors hang together already")
+        kept = np.flatnonzero(which)
+        where = slice(int(kept[0]), int(kept[-1]) + 1)
+        return replace(self, bias=self.bias[where], bias_weight=self.bias_weight[where])
+
     def knowing(self, log_evidence: FloatArray) -> Nodes:
         """Weighed with further evidence (k, e, b) of the errors; values of the bias that it leaves no mass at the ends
         of the range are left out."""
@@ -139,8 +147,9 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
 def bias_weights(bias: FloatArray, spacing: float, spread: FloatArray) -> FloatArray:
     """(b, t) probability of the surroundings of each node, half a spacing to each side, under N(0, spread^2)."""
     edges = np.append(bias - 0.5 * spacing, bias[-1] + 0.5 * spacing)
-    below = [[0.5 * (1.0 + erf(edge / (sqrt(2.0) * tau))) for tau in spread] for edge in edges]
-    return np.diff(np.array(below), axis=0)
+    widths = [sqrt(2.0) * tau for tau in spread]
+    below = 0.5 * (1.0 + np.array([[erf(edge / width) for width in widths] for edge in edges]))
+    return np.diff(below, axis=0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

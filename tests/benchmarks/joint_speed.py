@@ -85,7 +85,7 @@ def figures(repeats: int) -> list[Figure]:
         joint_ms, plain_ms = round(planned(after), 1), round(planned(independent), 1)
         made += [
             plain(f"joint belief, bearing {count}", round(grown(), 1), "ms", note=f"{after.density.size} cells"),
-            plain(f"the same, numpy reference, bearing {count}", round(grown(weighing=evidence.evidence), 1), "ms"),
+            plain(f"the same, numpy reference, bearing {count}", round(grown(weighing=evidence.Weigher), 1), "ms"),
             plain(
                 f"independent belief, all {count} bearings",
                 round(milliseconds(repeats, lambda a=alone: fold(problem, a)), 1),

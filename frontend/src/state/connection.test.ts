@@ -102,6 +102,59 @@ describe("what is heard", () => {
   });
 });
 
+describe("a bearing", () => {
+  const told = (seq: number, event: Parameters<typeof record>[0]): SourceMessage => ({
+    type: "event",
+    recorded: { ...record(event)[0]!, seq },
+  });
+  const bearing = told(5, someBearing());
+  const belief = toldBelief(7);
+  beforeEach(() => {
+    source.tell(...events);
+    frame();
+  });
+
+  it("is drawn with its belief, in one change with all that came between", () => {
+    const folds = changes(() => {
+      source.tell(someTelemetry({ battery_percent: 40 }));
+      source.tell(bearing, told(6, phase("planning")), someTelemetry({ battery_percent: 22 }), someStatus({ mission_id: "m" }));
+      vi.advanceTimersByTime(60);
+      expect(live.value.telemetry.get(CRAFT)?.value.battery_percent).not.toBe(22);
+      expect(live.value.events).toHaveLength(events.length);
+      source.tell({ type: "belief", frame: someFrame(7) }, belief);
+    });
+    expect(folds).toBe(1);
+    expect(live.value.events.map(({ seq }) => seq).slice(-3)).toEqual([5, 6, 7]);
+    expect(live.value.telemetry.get(CRAFT)?.value.battery_percent).toBe(22);
+    expect(changes(() => vi.advanceTimersByTime(1000))).toBe(0);
+  });
+
+  it("does not wait long for a belief that does not come", () => {
+    source.tell(bearing);
+    vi.advanceTimersByTime(99);
+    expect(live.value.events).toHaveLength(events.length);
+    vi.advanceTimersByTime(1);
+    expect(live.value.events.at(-1)?.seq).toBe(5);
+  });
+
+  it.each([phase("hold"), phase("manual"), { kind: "hold_ordered", craft_id: CRAFT, by: "a", reason: null }])(
+    "holds up no news of another kind",
+    (news) => {
+      source.tell(bearing, told(6, news as Parameters<typeof record>[0]));
+      frame();
+      expect(live.value.events.at(-1)?.seq).toBe(6);
+      source.tell(belief);
+      expect(live.value.events.at(-1)?.seq).toBe(7);
+    },
+  );
+
+  it("that comes behind other news waits for nothing", () => {
+    source.tell(told(5, phase("manual")), told(6, someBearing()));
+    frame();
+    expect(live.value.events.at(-1)?.seq).toBe(6);
+  });
+});
+
 describe("another source", () => {
   it("keeps what is known of the vehicle and forgets the mission", () => {
     source.tell(...events, someTelemetry({ battery_percent: 41 }), someStatus({ mission_id: "m" }));

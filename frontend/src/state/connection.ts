@@ -17,7 +17,8 @@ export const serverNowMs = computed<number>(() => {
 
 /** Messages are folded at most once a frame. */
 let pending: SourceMessage[] = [];
-let scheduled = false;
+/** Stops the frame, or the timer of a hidden page, that will fold them; null: none is asked for. */
+let unschedule: (() => void) | null = null;
 let waiting: ReturnType<typeof setTimeout> | undefined;
 
 /** These are shown with the next telemetry, if that comes within the time: each frame drawn costs the whole page. */
@@ -27,10 +28,25 @@ const WAIT_MS = 100;
 /** What a bearing told is drawn in the very next frame; its picture came right before. */
 const isAwaited = (message: SourceMessage) => message.type === "event" && message.recorded.event.kind === "belief_updated";
 
+/** A bearing is drawn with what it told, if that comes within the time: a frame of its own would be in its way, since
+ * without a graphics card one takes longer than the belief. */
+const BELIEF_MS = 100;
+let bearing: ReturnType<typeof setTimeout> | undefined;
+
+/** What comes between a bearing and its belief, and waits with it; news of any other kind is drawn at once. */
+const AMONG: ReadonlySet<SourceMessage["type"]> = new Set(["telemetry", "sweep_progress", "status", "belief"]);
+function isAmong(message: SourceMessage): boolean {
+  if (message.type !== "event") return AMONG.has(message.type);
+  const { event } = message.recorded;
+  return event.kind === "bearing_measured" || (event.kind === "phase_changed" && event.after === "planning");
+}
+
 function flush(): void {
-  scheduled = false;
+  unschedule?.();
+  unschedule = null;
   clearTimeout(waiting);
-  waiting = undefined;
+  clearTimeout(bearing);
+  waiting = bearing = undefined;
   if (pending.length === 0) return;
   const messages = pending;
   pending = [];
@@ -47,14 +63,24 @@ function receive(message: SourceMessage): void {
     flush();
     return;
   }
-  if (scheduled) return;
+  if (message.type === "event" && bearing === undefined && pending.every(isAmong)) {
+    unschedule?.();
+    unschedule = null;
+    bearing = setTimeout(flush, BELIEF_MS);
+  }
+  if (bearing !== undefined && isAmong(message)) return;
+  if (unschedule) return;
   if (CAN_WAIT.has(message.type)) {
     waiting ??= setTimeout(flush, WAIT_MS);
     return;
   }
-  scheduled = true;
-  if (document.hidden) setTimeout(flush, 50);
-  else requestAnimationFrame(flush);
+  if (document.hidden) {
+    const timer = setTimeout(flush, 50);
+    unschedule = () => clearTimeout(timer);
+  } else {
+    const frame = requestAnimationFrame(flush);
+    unschedule = () => cancelAnimationFrame(frame);
+  }
 }
 
 /** Another source from now on. What is known of the vehicles stays, so that the safety bar never goes blank. */

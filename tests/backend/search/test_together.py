@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -41,7 +42,8 @@ from hardware.direction_finding.bearings_file import RecordedBearing
 from hardware.direction_finding.recordings import Recording
 from hardware.frame import LocalFrame
 from hardware.readings import Place
-from planner.belief.joint import JointBelief
+from planner.belief.joint import JointBelief, update_joint
+from planner.types import Bearing
 
 HOME = Place(lat=50.6, lon=7.2)
 FRAME = LocalFrame(HOME)
@@ -105,6 +107,24 @@ def flown(spec: MissionSpec, turns: int) -> tuple[SearchState, list[Recorded]]:
         for name in TARGETS:
             record(task.together.about(state, name).belief_fact(state.emitters[name].bearings)[0])
     return state, records
+
+
+def test_beliefs_asked_for_at_once_are_those_asked_for_in_turn_each_folded_once(monkeypatch: pytest.MonkeyPatch):
+    state, records = flown(SPEC, 3)
+    folded: list[tuple[Bearing, ...]] = []
+
+    def counted(belief: JointBelief, taken: Bearing) -> JointBelief:
+        folded.append((*belief.folded, taken))
+        return update_joint(belief, taken)
+
+    monkeypatch.setattr("backend.search.localization.update_joint", counted)
+    task = search_task(SPEC, corner_of(SPEC.area), 0.0)
+    with ThreadPoolExecutor(len(TARGETS)) as pool:
+        told = pool.map(
+            lambda name: task.together.about(state, name).belief_fact(state.emitters[name].bearings)[0], TARGETS
+        )
+        assert [one.digest for one in told] == [digests(records, name)[-1] for name in TARGETS]
+    assert len(folded) == len(set(folded)) == 3 * len(TARGETS)
 
 
 def digests(records: list[Recorded], name: str) -> list[str]:

@@ -5,7 +5,15 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from planner.belief.estimate import confidence_region, estimate, geometric_median, mass_within, most_likely
+from planner.belief.estimate import (
+    HEAVY_POINTS,
+    MEDIAN_STEPS,
+    confidence_region,
+    estimate,
+    geometric_median,
+    mass_within,
+    most_likely,
+)
 from planner.belief.grid import fold, prior_belief
 from planner.types import Bearing, GaussianPrior, LinearMotion, Problem
 
@@ -61,6 +69,28 @@ def test_nothing_beats_the_geometric_median(weights, seed):
     least = mass @ np.hypot(x - px, y - py)
     for qx, qy in [*zip(x, y, strict=True), *rng.uniform(-50, 50, (20, 2))]:
         assert least <= (1 + 1e-3) * (mass @ np.hypot(x - qx, y - qy)) + 1e-6
+
+
+def plain_median(mass, x, y, tolerance):
+    """Weiszfeld's iteration, array by array."""
+    at = np.array([mass @ x, mass @ y])
+    for _ in range(MEDIAN_STEPS):
+        weight = mass / np.maximum(np.hypot(x - at[0], y - at[1]), tolerance)
+        before, at = at, np.array([weight @ x, weight @ y]) / weight.sum()
+        if np.hypot(*(at - before)) < tolerance:
+            break
+    tried = [at, *np.stack([x, y], axis=1)[np.argsort(-mass, kind="stable")[:HEAVY_POINTS]]]
+    return min(tried, key=lambda one: mass @ np.hypot(x - one[0], y - one[1]))
+
+
+@given(st.integers(2, 200), st.integers(0, 1000))
+def test_the_compiled_median_is_the_plain_one(points, seed):
+    rng = np.random.default_rng(seed)
+    mass = rng.exponential(size=points) ** 2
+    mass /= mass.sum()
+    x, y = rng.uniform(-500, 500, (2, points))
+    found = geometric_median(mass, x, y, tolerance=1e-9)
+    assert found == pytest.approx(plain_median(mass, x, y, 1e-9), abs=1e-7)
 
 
 @given(st.floats(1.3, 1.8), st.floats(-0.2, 0.4))

@@ -277,3 +277,15 @@ def test_unusable_priors_are_refused(prior, reason):
 def test_a_uniform_prior_is_flat():
     belief = prior_belief(problem(prior=UniformPrior()))
     assert np.ptp(belief.density) == pytest.approx(0.0, abs=1e-15)
+
+
+@given(st.integers(0, 10_000), st.sampled_from([0.5, 0.95, 1.0 - 1e-6]), st.booleans())
+def test_the_smallest_set_is_what_sorting_the_cells_themselves_finds(seed, share, ties):
+    rng = np.random.default_rng(seed)
+    mass = rng.exponential(size=tuple(rng.integers(1, 30, 2))) ** 3
+    mass = np.round(mass, 1) + 0.1 if ties else mass
+    belief = replace(prior_belief(problem()), density=mass / mass.sum())
+    order = np.argsort(-belief.density.ravel(), kind="stable")
+    within = np.cumsum(belief.density.ravel()[order])
+    count = int(np.searchsorted(within, share * within[-1])) + 1
+    assert np.array_equal(np.flatnonzero(grid.smallest_set(belief, share)), np.sort(order[:count]))

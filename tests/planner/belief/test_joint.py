@@ -97,6 +97,52 @@ def test_the_compiled_evidence_of_whole_sweeps_is_that_of_the_readable_one(count
         assert ours == pytest.approx(theirs, abs=2e-3 * (count + 1))
 
 
+@pytest.mark.parametrize("count", [1, 2, 5, compiled_evidence.RESCALED_EVERY, 19])
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_weigher_asked_in_parts_says_what_the_evidence_does(count, whole):
+    rng = np.random.default_rng(count)
+    bearings = [*random_bearings(rng, count), replace(random_bearings(rng, 1)[0], sigma=np.deg2rad(4.0))]
+    bearings += [replace(b, angle=float(b.angle + 0.1)) for b in bearings[-1:]]  # of one sigma, so of one table
+    if whole:
+        bearings[0] = replace(bearings[0], profile=profile(bearings[0].angle, bearings[0].sigma))
+    seen = sightings(bearings)
+    x, y = rng.uniform(-900.0, 900.0, (2, 60))
+    mass = rng.dirichlet(np.ones(60))
+    for prior in (ErrorPrior(), KNOWN, replace(KNOWN, rate=np.array([0.01]))):
+        grid = nodes(prior, float(seen.sigma.min()), count)
+        found, asked = compiled_evidence.evidence(x, y, seen, grid), compiled_evidence.Weigher(seen, grid)
+        in_parts = np.concatenate([asked.log(x[:7], y[:7]), asked.log(x[7:], y[7:])])
+        assert in_parts == pytest.approx(found.log, rel=1e-12, abs=1e-10)
+        shared, plain = asked.shared_out(x, y, mass), evidence.Weigher(seen, grid).shared_out(x, y, mass)
+        for ours, theirs in zip(shared, (mass @ found.bias, mass @ found.scale, mass @ found.rate), strict=False):
+            assert ours == pytest.approx(theirs, abs=1e-12)
+        assert shared.mean == pytest.approx(found.bias @ grid.bias, abs=1e-12)
+        for ours, theirs in zip(shared, plain, strict=True):
+            assert ours == pytest.approx(theirs, abs=2e-3 * len(bearings))
+
+
+def test_places_that_no_bearing_points_at_have_the_outliers_share_alone():
+    """All nodes out of reach: nothing is left but the prior, times what outliers have in common."""
+    seen = sightings([Bearing(0.0, 0.0, 0.0, np.deg2rad(2.0)), Bearing(10.0, 0.0, 0.1, np.deg2rad(2.0))])
+    grid = nodes(ErrorPrior(), float(seen.sigma.min()), 2)
+    asked, plain = compiled_evidence.Weigher(seen, grid), evidence.Weigher(seen, grid)
+    behind, beside = np.array([-500.0, -500.0]), np.array([0.0, 30.0])
+    assert asked.log(behind, beside) == pytest.approx(plain.log(behind, beside), abs=1e-9)
+    ours, theirs = (way.shared_out(behind, beside, np.array([0.5, 0.5])) for way in (asked, plain))
+    for one, other in zip(ours, theirs, strict=True):
+        assert one == pytest.approx(other, abs=1e-12)
+
+
+def test_the_belief_by_the_readable_evidence_is_nearly_the_same():
+    bearings = [toward(place, error) for place, error in zip(AROUND[:3], (5.0, 8.0, 3.0), strict=True)]
+    ours, theirs = joint(bearings[:-1]), joint(bearings[:-1])
+    ours, theirs = (
+        update_joint(one, bearings[-1], way.Weigher) for one, way in ((ours, compiled_evidence), (theirs, evidence))
+    )
+    assert 0.5 * np.abs(ours.density - theirs.density).sum() < 1e-3
+    assert ours.errors[0].bias == pytest.approx(theirs.errors[0].bias, abs=1e-4)
+
+
 def test_a_whole_sweep_that_says_no_more_than_its_bearing_makes_the_same_belief():
     bearings = [toward(place, error) for place, error in zip(AROUND[:4], (5.0, 8.0, 3.0, 6.0), strict=True)]
     whole = [replace(b, profile=profile(b.angle, b.sigma)) for b in bearings]

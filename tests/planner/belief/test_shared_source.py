@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planner.belief import compiled_evidence, evidence
+from planner.belief import compiled_evidence, evidence, shared_source
 from planner.belief.evidence import sightings
 from planner.belief.grid import digest
 from planner.belief.joint import JointBelief, joint_prior, log_prior, places_besides, update_joint
@@ -168,6 +168,37 @@ def test_several_emitters_find_the_compass_sooner_and_the_places_closer():
     means = [found.errors[0].bias for found in shared]
     assert np.ptp(means) < 1e-3
     assert np.ptp([found.errors[0].bias_sd for found in shared]) < 1e-3
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_errors_that_are_out_of_question_are_not_asked_for_and_nothing_changes(monkeypatch, seed):
+    rng = np.random.default_rng(seed)
+    sigma, outlier = np.deg2rad(rng.uniform(1.0, 3.0)), seed % 2
+    beliefs = []
+    for target in TARGETS:
+        taken = heard(target, rng, 4, bias=np.deg2rad(rng.uniform(-2.0, 2.0) + 5.0), sigma=sigma)
+        if outlier:
+            taken[2] = replace(taken[2], angle=float(wrap(taken[2].angle + 1.0)))
+        beliefs.append(alone(taken))
+    asked = []
+
+    def counted(belief, source, grid):
+        asked.append(len(grid.bias))
+        return node_evidence(belief, source, grid)
+
+    monkeypatch.setattr(shared_source, "node_evidence", counted)
+    fewer = with_shared_errors(beliefs, threads=2)
+    every = len(common_nodes(beliefs, "craft").bias)
+    assert max(asked) < 0.7 * every
+    monkeypatch.setattr(shared_source, "_in_question", lambda grid, _: np.ones(len(grid.bias), dtype=bool))
+    asked.clear()
+    whole = with_shared_errors(beliefs)
+    assert set(asked) == {every}
+    for one, other in zip(fewer, whole, strict=True):
+        assert (one.x0, one.y0, one.h) == (other.x0, other.y0, other.h)
+        assert np.abs(one.density - other.density).max() < 1e-12
+        assert one.errors[0].nodes.bias == pytest.approx(other.errors[0].nodes.bias)
+        assert one.errors[0].bias_mass == pytest.approx(other.errors[0].bias_mass, abs=1e-9)
 
 
 def test_one_emitter_and_what_the_compass_did_not_hear_stay_bit_for_bit():

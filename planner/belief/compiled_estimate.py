@@ -1,0 +1,56 @@
+# pyright: standard
+"""The geometric median of weighed points, compiled by numba, without the GIL: a hundred steps over all cells."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.compiling import SOURCES, entry, jit
+from planner.types import FloatArray, IntArray
+
+
+@jit
+def _mean_distance(mass, x, y, px, py):
+    total = 0.0
+    for i in range(len(mass)):
+        dx, dy = x[i] - px, y[i] - py
+        total += mass[i] * np.sqrt(dx * dx + dy * dy)
+    return total
+
+
+def geometric_median(
+    mass: FloatArray, x: FloatArray, y: FloatArray, tried: IntArray, tolerance: float, steps: int
+) -> tuple[float, float]:
+    """As `estimate.geometric_median` finds it among points (n,) of mass 1, in so many steps at most. tried: (k,) indices
+    of points to try besides; of equally good ones the first."""
+    mass, x, y = (np.ascontiguousarray(one, dtype=float) for one in (mass, x, y))
+    px, py = _median(mass, x, y, tried, tolerance, steps)
+    return float(px), float(py)
+
+
+@entry
+def _median(mass, x, y, tried, tolerance, steps):
+    _ = SOURCES
+    px = py = 0.0
+    for i in range(len(mass)):
+        px += mass[i] * x[i]
+        py += mass[i] * y[i]
+    for _step in range(steps):
+        pull = pull_x = pull_y = 0.0
+        for i in range(len(mass)):
+            dx, dy = x[i] - px, y[i] - py
+            weight = mass[i] / max(np.sqrt(dx * dx + dy * dy), tolerance)
+            pull += weight
+            pull_x += weight * x[i]
+            pull_y += weight * y[i]
+        qx, qy = pull_x / pull, pull_y / pull
+        moved = np.hypot(qx - px, qy - py)
+        px, py = qx, qy
+        if moved < tolerance:
+            break
+    least = _mean_distance(mass, x, y, px, py)
+    for i in tried:
+        distance = _mean_distance(mass, x, y, x[i], y[i])
+        if distance < least:
+            least, px, py = distance, x[i], y[i]
+    return px, py
