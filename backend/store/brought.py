@@ -20,7 +20,7 @@ from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import FORM, MissionBroughtIn, Recorded
+from backend.events import FORM, Event, MissionBroughtIn, MissionRestored, Recorded
 from backend.mission.state import fold as fold_mission
 from backend.ports import TrackPoint
 from backend.reasons.request import BundleFileWrong, BundleUnreadable
@@ -280,15 +280,20 @@ def _thin_tracks(paths: Mapping[str, Any], mission_id: str) -> tuple[TrackEntry,
 
 
 async def bring_in(engine: AsyncEngine, brought: Brought, at_utc: datetime, by: str) -> None:
-    """One transaction. A flight that writes meanwhile waits in the spool. Raises JournalUnavailable."""
-    fact = MissionBroughtIn(software=brought.software, by=by)
-    last = to_row(len(brought.rows) + 1, at_utc, fact)
-    columns = to_columns(fold(brought.digest, to_records(brought.mission_id, [last])))
+    """One transaction. A flight that writes meanwhile waits in the spool. Raises JournalUnavailable.
+
+    One that was deleted elsewhere is restored: nobody would see it, and retention would soon bury it.
+    """
+    facts: list[Event] = [MissionBroughtIn(software=brought.software, by=by)]
+    if brought.digest.entry.deleted_at_us is not None:
+        facts.append(MissionRestored(by=by))
+    added = [to_row(seq, at_utc, fact) for seq, fact in enumerate(facts, start=len(brought.rows) + 1)]
+    columns = to_columns(fold(brought.digest, to_records(brought.mission_id, added)))
     columns["name"] = columns["name"].replace("\x00", "")
     rows = [
         {"mission_id": brought.mission_id, "seq": row.seq, "at_us": row.at_us, "kind": row.kind, "form": FORM}
         | {"body": row.body}
-        for row in (*brought.rows, last)
+        for row in (*brought.rows, *added)
     ]
     try:
         async with patience(WRITE_S), engine.execution_options(write=True).begin() as connection:

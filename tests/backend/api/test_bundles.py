@@ -137,6 +137,18 @@ async def test_the_same_bundle_again_changes_nothing_and_one_that_differs_is_ref
     assert (await there.get(f"/api/missions/{ID}/events", params={"limit": 5000})).json() == before
 
 
+async def test_a_mission_that_was_deleted_elsewhere_is_in_the_list_here(client, flown, elsewhere):
+    """And not buried with the next look of retention."""
+    there, other = elsewhere
+    await client.delete(f"/api/missions/{flown}")
+    assert (await there.post("/api/bundles", content=await exported(client, flown))).status_code == 201
+    listed = (await there.get("/api/missions")).json()["missions"]
+    assert [one["mission_id"] for one in listed] == [ID]
+    assert [r.event.kind for r in await other.journal.read(ID)][-3:] == [
+        "mission_deleted", "mission_brought_in", "mission_restored"
+    ]  # fmt: skip
+
+
 async def test_a_bundle_of_a_bundle_is_the_same_mission(client, flown, elsewhere):
     """Brought in a second time, with the fact of the first in it."""
     there, _ = elsewhere
