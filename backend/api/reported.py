@@ -65,7 +65,7 @@ async def report_bearing(
         place=report.place,
         bearing_deg=report.bearing_deg,
         sigma_deg=report.sigma_deg,
-        taken_at_s=services.now() if taken is None else taken.timestamp(),
+        taken_at_s=_on_our_clock(services, services.wall() if taken is None else taken.timestamp()),
         emitter_id=report.emitter_id,
         snr_db=report.snr_db,
     )
@@ -96,11 +96,12 @@ async def report_kraken(
     """Add a bearing of a KrakenSDR: the text of its DOA_value.html (CSV), or one of its JSON records."""
     body = await request.body()
     try:
-        reported = read_kraken(body, services.now())
+        reported = read_kraken(body, services.wall())
     except KrakenRefused as error:
         raise MissionInputError(KrakenUnreadable(str(error)), "body") from error
     by = _who(principal, reported.by)
-    return await _taken(services, mission_id, replace(reported, by=by), response)
+    taken_at_s = _on_our_clock(services, reported.taken_at_s)
+    return await _taken(services, mission_id, replace(reported, by=by, taken_at_s=taken_at_s), response)
 
 
 @router.delete("/bearings/{bearing_id}", status_code=204)
@@ -139,6 +140,12 @@ async def mute_reporter(
 ) -> None:
     """Stop counting one's own bearings, or count them again. Whoever controls the search does it for others."""
     await services.missions.reports.mute(mission_id, _who(principal, reporter.by), reporter.muted)
+
+
+def _on_our_clock(services: Services, taken_at_s: float) -> float:
+    """A moment of the world outside on the mission's clock, by how long it is past: the two part where the machine was
+    suspended, its clock was set, or a simulated mission runs faster."""
+    return services.now() - (services.wall() - taken_at_s)
 
 
 def _who(principal: Principal, said: str | None) -> str:

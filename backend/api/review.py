@@ -24,6 +24,7 @@ from backend.events import FIRST_CRAFT, Recorded
 from backend.reasons.request import IqNotKept
 from backend.store.brought import raw_files
 from backend.store.iq_folder import archive_size, archived
+from backend.store.ways_files import WaysFiles
 from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
@@ -168,7 +169,8 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     tracks = await services.journal.tracks(mission_id)
     making = EXPORTS[format]
     if format == "bundle":
-        making = partial(bundle, raw=raw_files(mission_id, await services.journal.sweeps(mission_id), tracks))
+        ways = await asyncio.to_thread(WaysFiles.of_settings(services.settings).content, mission_id)
+        making = partial(bundle, raw=raw_files(mission_id, await services.journal.sweeps(mission_id), tracks, ways))
     return Response(
         await beside(services, len(recorded), making, recorded, tracks),
         media_type=MEDIA_TYPES[format],

@@ -36,8 +36,9 @@ DESK_S, DESK_BYTES = 120.0, 2 * 2**30
 class Services:
     """Everything the endpoints use; made once by the application's start.
 
-    now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
-    they never take the planner's threads from the flight. payload: None where no companion computer may connect.
+    now: UTC epoch seconds of the mission's clock. wall: of the machine's, which may be set, or go on while the machine
+    sleeps: the mission's does neither. planning: what-if questions are answered one at a time, so that they never take
+    the planner's threads from the flight. payload: None where no companion computer may connect.
     beside: short work on missions runs in one thread at a time, since each more takes the interpreter from the flight.
     workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
     stocks: what comes from outside, and how much of it may be kept. iq: of recordings that came as SigMF.
@@ -59,6 +60,7 @@ class Services:
     desk: Workers = field(default_factory=lambda: Workers(time_s=DESK_S, memory_bytes=DESK_BYTES))
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     beside: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
+    wall: Callable[[], float] = time.time
     began_monotonic_s: float = field(default_factory=time.monotonic)
     stocks: dict[StockKind, Stock] = field(init=False)
     iq: IqFolder = field(init=False)

@@ -35,10 +35,7 @@ class WaysFolder:
 
     def json(self, mission_id: str) -> bytes:
         """Of MissionWays, as it was stored; empty ways when there are none."""
-        try:
-            return self.files.path(mission_id).read_bytes()
-        except FileNotFoundError:
-            return MissionWays().model_dump_json().encode()
+        return self.files.content(mission_id) or MissionWays().model_dump_json().encode()
 
     def traced(self, mission_id: str) -> tuple[Traced, ...]:
         """Shapes; read once until they change."""
@@ -47,6 +44,11 @@ class WaysFolder:
             return _traced(path, path.stat().st_mtime_ns)
         except FileNotFoundError:
             return ()
+
+    def keep(self, mission_id: str, ways: MissionWays) -> None:
+        """In the place of what was there. Raises OSError."""
+        self.files.directory.mkdir(parents=True, exist_ok=True)
+        replace_text(self.files.path(mission_id), ways.model_dump_json())
 
     def forget(self, mission_id: str) -> None:
         """Nothing happens when there are none. Raises OSError."""
@@ -72,7 +74,7 @@ class WaysFolder:
         Raises MapRefused.
         """
         ways = read_ways(path.read_bytes(), area, name, now)
-        replace_text(self.files.path(mission_id), ways.model_dump_json())
+        self.keep(mission_id, ways)
         return ways.model_copy(update={"features": []})
 
 

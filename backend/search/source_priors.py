@@ -17,6 +17,8 @@ from planner.belief.source_errors import ErrorPrior, evenly_spread
 
 FEWEST_OUTLIERS = 0.01
 MOST_OUTLIERS = 0.6
+LEAST_OUTLIERS = 1e-9
+"""Of any rate but 0: bearings that nothing explains leave the range of numbers otherwise."""
 """Rates that a joint belief allows for, whatever is specified."""
 
 SCALES, SCALE_WEIGHTS = (0.5, 1.0, 1.45), (0.15, 0.63, 0.22)
@@ -27,11 +29,12 @@ RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 1.0, 2.0, 5.0), (0.066, 0.169, 0.338, 0.0
 a claim after two takes a source whose flights taught that it has hardly any. The last is of a flight among echoes."""
 
 RATES_BEFORE = {
+    1: ((0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.36, 0.06, 0.33)),
     4: ((0.03, 0.2, 0.5, 2.0), (0.07, 0.18, 0.42, 0.33)),
     5: ((0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.36, 0.06, 0.33)),
 }
 """And the weights, of sources of which nothing is known, by how many rates the learned errors of a specification
-compare: journals fold to what they were."""
+compare: journals fold to what they were. One rate is that of a sensor without outliers, then as now."""
 
 
 def unknown_errors(outlier_probability: float) -> ErrorPrior:
@@ -42,7 +45,7 @@ def unknown_errors(outlier_probability: float) -> ErrorPrior:
 def _unknown(rates: Sequence[float], weights: Sequence[float], outlier_probability: float) -> ErrorPrior:
     if outlier_probability == 0.0:
         rates, weights, outlier_probability = (0.03,), (1.0,), 0.1
-    rate = np.minimum(np.array(rates) * outlier_probability, MOST_OUTLIERS)
+    rate = np.clip(np.array(rates) * outlier_probability, LEAST_OUTLIERS, MOST_OUTLIERS)
     return replace(
         UNKNOWN_SOURCE,
         scale=np.array(SCALES),
@@ -70,7 +73,7 @@ def prior_in(learned: LearnedErrors) -> ErrorPrior:
         spread_weight=_normalized(learned.spread_weight),
         scale=np.array(learned.scale),
         scale_weight=_normalized(learned.scale_weight),
-        rate=np.array(learned.rate),
+        rate=np.maximum(learned.rate, LEAST_OUTLIERS),
         rate_weight=_normalized(learned.rate_weight),
     )
 

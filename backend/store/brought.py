@@ -20,7 +20,7 @@ from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import FORM, MissionBroughtIn, Recorded
+from backend.events import FORM, Event, MissionBroughtIn, MissionRestored, Recorded
 from backend.mission.state import fold as fold_mission
 from backend.ports import TrackPoint
 from backend.reasons.request import BundleFileWrong, BundleUnreadable
@@ -32,11 +32,12 @@ from backend.store.reading import unavailable
 from backend.store.tables import events, missions
 from planner.reason import ReasonedError
 
-SCHEMA, SCHEMA_VERSION = "crossfix bundle", 1
+SCHEMA, SCHEMA_VERSION = "crossfix bundle", 2
 JOURNAL, MANIFEST, SWEEPS, TRACKS = "mission.json", "bundle.json", "sweeps.jsonl", "tracks.jsonl"
+WAYS = "ways.geojson"
 BESIDE = frozenset({"README.txt", "mission.geojson", "mission.kml", "bearings.csv", "mission.mcap", "tak.zip"})
 """Made from the journal; not read."""
-READ = frozenset({JOURNAL, MANIFEST, SWEEPS, TRACKS})
+READ = frozenset({JOURNAL, MANIFEST, SWEEPS, TRACKS, WAYS})
 
 MOST_FILES = 32
 MOST_BYTES = 96 * 2**20
@@ -75,7 +76,8 @@ def _wrong(fault: InFile, name: str) -> BundleRefused:
 
 @dataclass(frozen=True, slots=True)
 class Brought:
-    """rows: from number 1 on, in today's form. digest: after them. software: that wrote the bundle."""
+    """rows: from number 1 on, in today's form. digest: after them. software: that wrote the bundle. ways: the file of
+    its ways, which nobody has looked at yet; None: it has none."""
 
     mission_id: str
     rows: tuple[EventRow, ...]
@@ -83,12 +85,16 @@ class Brought:
     sweeps: tuple[SweepEntry, ...]
     tracks: tuple[TrackEntry, ...]
     software: str
+    ways: bytes | None = None
 
 
 def raw_files(
-    mission_id: str, sweeps: Sequence[SweepEntry], tracks: Mapping[str, Sequence[TrackPoint]]
+    mission_id: str,
+    sweeps: Sequence[SweepEntry],
+    tracks: Mapping[str, Sequence[TrackPoint]],
+    ways: bytes | None = None,
 ) -> dict[str, bytes]:
-    """The files of a bundle that only Crossfix reads, exact to the last bit."""
+    """The files of a bundle that Crossfix reads, exact to the last bit. ways: as they lie beside the database."""
     pieces = [
         TrackEntry(mission_id, craft_id, tuple(points[at : at + POINTS_A_LINE]))
         for craft_id, points in tracks.items()
@@ -97,7 +103,7 @@ def raw_files(
     return {
         SWEEPS: b"".join(entry.encode() + b"\n" for entry in sweeps),
         TRACKS: b"".join(piece.encode() + b"\n" for piece in pieces),
-    }
+    } | ({} if ways is None else {WAYS: ways})
 
 
 def read_bundle(content: bytes) -> Brought:
@@ -120,7 +126,7 @@ def read_bundle(content: bytes) -> Brought:
         raise _wrong("not_exported", JOURNAL) from error
     if digest.unfinished:
         raise _refused("under_way")
-    return Brought(mission_id, rows, digest, sweeps, tracks, software)
+    return Brought(mission_id, rows, digest, sweeps, tracks, software, files.get(WAYS))
 
 
 def _unpacked(content: bytes) -> dict[str, bytes]:
@@ -274,15 +280,20 @@ def _thin_tracks(paths: Mapping[str, Any], mission_id: str) -> tuple[TrackEntry,
 
 
 async def bring_in(engine: AsyncEngine, brought: Brought, at_utc: datetime, by: str) -> None:
-    """One transaction. A flight that writes meanwhile waits in the spool. Raises JournalUnavailable."""
-    fact = MissionBroughtIn(software=brought.software, by=by)
-    last = to_row(len(brought.rows) + 1, at_utc, fact)
-    columns = to_columns(fold(brought.digest, to_records(brought.mission_id, [last])))
+    """One transaction. A flight that writes meanwhile waits in the spool. Raises JournalUnavailable.
+
+    One that was deleted elsewhere is restored: nobody would see it, and retention would soon bury it.
+    """
+    facts: list[Event] = [MissionBroughtIn(software=brought.software, by=by)]
+    if brought.digest.entry.deleted_at_us is not None:
+        facts.append(MissionRestored(by=by))
+    added = [to_row(seq, at_utc, fact) for seq, fact in enumerate(facts, start=len(brought.rows) + 1)]
+    columns = to_columns(fold(brought.digest, to_records(brought.mission_id, added)))
     columns["name"] = columns["name"].replace("\x00", "")
     rows = [
         {"mission_id": brought.mission_id, "seq": row.seq, "at_us": row.at_us, "kind": row.kind, "form": FORM}
         | {"body": row.body}
-        for row in (*brought.rows, last)
+        for row in (*brought.rows, *added)
     ]
     try:
         async with patience(WRITE_S), engine.execution_options(write=True).begin() as connection:

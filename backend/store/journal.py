@@ -78,6 +78,8 @@ class SqlJournal:
         self._now = now
         self._lock = asyncio.Lock()
         """Over the numbers of a mission's facts."""
+        self._bringing = asyncio.Lock()
+        """One bundle after the other: a flight's facts wait for none."""
         self._written: dict[str, Written] = {}
         self._tasks: set[asyncio.Task[Any]] = set()
 
@@ -146,7 +148,7 @@ class SqlJournal:
         return await self._whole(self._bring_in(brought, by))
 
     async def _bring_in(self, brought: Brought, by: str) -> bool:
-        async with self._lock:
+        async with self._bringing:
             here = (await self._known(brought.mission_id)).recorded
             if here:
                 rows = await asyncio.to_thread(lambda: tuple(to_row(r.seq, r.at_utc, r.event) for r in here))

@@ -26,6 +26,13 @@ class WaysFiles:
         """Of the mission's file, if there is one."""
         return self.directory / f"{mission_id}{ENDING}"
 
+    def content(self, mission_id: str) -> bytes | None:
+        """As it was stored; None when there are none. Raises OSError."""
+        try:
+            return self.path(mission_id).read_bytes()
+        except FileNotFoundError:
+            return None
+
     def missions(self) -> list[str]:
         """Of which ways are kept."""
         return sorted(path.name.removesuffix(ENDING) for path in self.directory.glob(f"*{ENDING}"))

@@ -27,12 +27,14 @@ FILES: dict[str, tuple[Export, str]] = {
 
 
 SCHEMA = "crossfix bundle"
-SCHEMA_VERSION = 1
-MANIFEST, SWEEPS, TRACKS = "bundle.json", "sweeps.jsonl", "tracks.jsonl"
+SCHEMA_VERSION, WITHOUT_WAYS = 2, 1
+"""A bundle without ways is as it was, and can be brought in by a Crossfix of before."""
+MANIFEST, SWEEPS, TRACKS, WAYS = "bundle.json", "sweeps.jsonl", "tracks.jsonl", "ways.geojson"
 RAW: dict[str, str] = {
     MANIFEST: "which schema the bundle has; Crossfix opens it as a mission",
     SWEEPS: "the power of each sweep, sample by sample, a line each (samples: zlib of three rows of float64)",
     TRACKS: "the flown path of each craft with all that was kept of it, a line each",
+    WAYS: "roads, paths and barriers that were uploaded, where there are any",
 }
 """What another installation needs besides mission.json for the same review."""
 
@@ -40,10 +42,13 @@ RAW: dict[str, str] = {
 def bundle(
     recorded: Sequence[Recorded], tracks: export.Tracks, raw: Mapping[str, bytes] = MappingProxyType({})
 ) -> bytes:
-    """The zip; the same mission gives the same bytes. raw: the files SWEEPS and TRACKS, as the store writes them."""
+    """The zip; the same mission gives the same bytes. raw: the files SWEEPS, TRACKS and, where there are
+    ways, WAYS, as the store writes them."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         words_of = {name: words for name, (_, words) in FILES.items()} | RAW
+        if WAYS not in raw:
+            del words_of[WAYS]
         contents = "".join(f"{name:16} {words}\n" for name, words in words_of.items())
         notice = "Positions are WGS84, bearings degrees clockwise from true north, times UTC."
         _add(archive, "README.txt", f"A mission of crossfix {VERSION}.\n{notice}\n\n{contents}")
@@ -51,7 +56,7 @@ def bundle(
             _add(archive, name, make(recorded, tracks))
         manifest = {
             "schema": SCHEMA,
-            "version": SCHEMA_VERSION,
+            "version": SCHEMA_VERSION if WAYS in raw else WITHOUT_WAYS,
             "software": f"crossfix {VERSION}",
             "mission_id": recorded[0].mission_id,
             "events": len(recorded),
@@ -59,6 +64,8 @@ def bundle(
         _add(archive, MANIFEST, json.dumps(manifest, indent=1))
         for name in (SWEEPS, TRACKS):
             _add(archive, name, raw.get(name, b""))
+        if WAYS in raw:
+            _add(archive, WAYS, raw[WAYS])
     return stream.getvalue()
 
 

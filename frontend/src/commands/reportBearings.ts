@@ -20,12 +20,18 @@ export const queue = signal<Queue>(read(stored()));
 /** The last attempt did not reach the server. */
 export const unreached = signal(false);
 
-function keep(next: Queue): void {
-  queue.value = next;
+/** False: a private window keeps nothing, a full one not all; the bearings live as long as the page. */
+let keeps = true;
+
+/** Of what the browser keeps, where another tab may have put bearings meanwhile. */
+function change(next: (queue: Queue) => Queue): void {
+  const kept = keeps ? stored() : null;
+  queue.value = next(kept === null ? queue.peek() : read(kept));
   try {
-    localStorage.setItem(KEY, JSON.stringify(next));
+    localStorage.setItem(KEY, JSON.stringify(queue.peek()));
+    keeps = true;
   } catch {
-    // a private window keeps nothing: the bearings live as long as the page
+    keeps = false;
   }
 }
 
@@ -44,17 +50,17 @@ async function say({ missionId, report, stage }: Queued): Promise<void> {
     await takeBackBearing(missionId, id).catch((error: unknown) => {
       if (refused(error) === null) throw error;
     });
-    keep(withdrawn(queue.peek(), id));
+    change((now) => withdrawn(now, id));
     return;
   }
   try {
     await reportBearing(missionId, report);
     if (stage === "restoring") await restoreBearing(missionId, id);
-    keep(answered(queue.peek(), id, null));
+    change((now) => answered(now, id, null));
   } catch (error) {
     const why = refused(error);
     if (why === null) throw error;
-    keep(answered(queue.peek(), id, why));
+    change((now) => answered(now, id, why));
   }
 }
 
@@ -77,17 +83,17 @@ export async function sendWaiting(): Promise<void> {
 
 export function report(missionId: string, bearing: Omit<BearingReport, "bearing_id" | "taken_at_utc">): void {
   const taken = { ...bearing, bearing_id: newCommandId(), taken_at_utc: new Date().toISOString() };
-  keep(add(queue.peek(), missionId, taken));
+  change((now) => add(now, missionId, taken));
   void sendWaiting();
 }
 
 export function backspace(missionId: string): void {
-  keep(takeBackLast(queue.peek(), missionId));
+  change((now) => takeBackLast(now, missionId));
   void sendWaiting();
 }
 
 export function countAgain(bearingId: string): void {
-  keep(restore(queue.peek(), bearingId));
+  change((now) => restore(now, bearingId));
   void sendWaiting();
 }
 
@@ -95,10 +101,15 @@ export function countAgain(bearingId: string): void {
 export function keepSending(): () => void {
   const again = setInterval(() => void sendWaiting(), AGAIN_MS);
   const online = () => void sendWaiting();
+  const elsewhere = ({ key, newValue }: StorageEvent) => {
+    if (key === KEY && newValue !== null) queue.value = read(newValue);
+  };
   addEventListener("online", online);
+  addEventListener("storage", elsewhere);
   void sendWaiting();
   return () => {
     clearInterval(again);
     removeEventListener("online", online);
+    removeEventListener("storage", elsewhere);
   };
 }

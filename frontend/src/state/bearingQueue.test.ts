@@ -54,7 +54,15 @@ describe("bearings on their way", () => {
     expect(read(JSON.stringify(queue))).toEqual(queue);
     for (const nonsense of [null, "", "{", "7", "[1, null, {}]"]) expect(read(nonsense)).toEqual([]);
   });
-  it("are not kept without end", () => {
-    expect(filled(...Array.from({ length: KEPT + 5 }, (_, i) => `b${i}`))).toHaveLength(KEPT);
+  it("are not kept without end once the server has them", () => {
+    const ids = Array.from({ length: KEPT + 5 }, (_, i) => `b${i}`);
+    const sent = ids.reduce<Queue>((queue, id) => answered(add(queue, "m", report(id)), id, null), []);
+    expect(sent.map((one) => one.report.bearing_id)).toEqual(ids.slice(5));
+  });
+  it("are all kept while the server has not heard of them", () => {
+    const ids = Array.from({ length: 3 * KEPT }, (_, i) => `b${i}`);
+    const queue = add(answered(takeBackLast(filled(...ids), "m"), "b0", null), "m", report("last"));
+    expect(pending(queue)).toBe(3 * KEPT);
+    expect(nextOf(queue)!.report.bearing_id).toBe("b1");
   });
 });

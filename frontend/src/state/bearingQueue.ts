@@ -16,10 +16,17 @@ export interface Queued {
 
 export type Queue = readonly Queued[];
 
+const COUNTS: readonly Stage[] = ["waiting", "sent", "restoring"];
+const TO_SAY: readonly Stage[] = ["waiting", "withdrawing", "restoring"];
+
+/** Of those of which the server knows; what it has not heard is kept, however many there are. */
 export const KEPT = 40;
 
-export const add = (queue: Queue, missionId: string, report: Report): Queue =>
-  [...queue, { missionId, report, stage: "waiting" as const, problem: null }].slice(-KEPT);
+export function add(queue: Queue, missionId: string, report: Report): Queue {
+  const said = queue.filter((one) => !TO_SAY.includes(one.stage));
+  const old = new Set(said.slice(0, Math.max(0, said.length + 1 - KEPT)));
+  return [...queue.filter((one) => !old.has(one)), { missionId, report, stage: "waiting" as const, problem: null }];
+}
 
 const change = (queue: Queue, bearingId: string, changes: Partial<Queued>): Queue =>
   queue.map((one) => (one.report.bearing_id === bearingId ? { ...one, ...changes } : one));
@@ -39,9 +46,6 @@ export const withdrawn = (queue: Queue, bearingId: string): Queue => change(queu
 /** One that the server may never have had is sent once more: what it has already, it does not count twice. */
 export const restore = (queue: Queue, bearingId: string): Queue =>
   queue.map((one) => (one.report.bearing_id === bearingId && one.stage === "back" ? { ...one, stage: "restoring", problem: null } : one));
-
-const COUNTS: readonly Stage[] = ["waiting", "sent", "restoring"];
-const TO_SAY: readonly Stage[] = ["waiting", "withdrawing", "restoring"];
 
 /** The last own bearing that counts, or is on its way to. */
 export const lastOf = (queue: Queue, missionId: string): Queued | undefined =>

@@ -1001,7 +1001,8 @@ export interface paths {
         /**
          * Bring In Bundle
          * @description Bring in the bundle of another installation as a mission with the id it had there: the same events, sweeps and
-         *     paths, so the same review. The same bundle again changes nothing: 200. 409: the mission is here with other facts.
+         *     paths, so the same review, and with its ways. The same bundle again changes nothing: 200. 409: the mission is here
+         *     with other facts.
          */
         post: operations["bring_in_bundle"];
         delete?: never;

@@ -73,8 +73,9 @@ async def running_services(settings: Settings, vehicle: PaperVehicle, workers: W
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
         access = Access(None, AuditLog(None, lambda: NOW_S), people_expected=False)
         services = Services(
-            room, journal, hub, settings, lambda: NOW_S, payload, workers, access=access, finder=finder, pattern=pattern
-        )
+            room, journal, hub, settings, lambda: NOW_S, payload, workers,
+            access=access, finder=finder, pattern=pattern, wall=lambda: NOW_S,
+        )  # fmt: skip
         yield services
         for stock in services.stocks.values():
             await stock.close()

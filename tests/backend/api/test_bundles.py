@@ -24,7 +24,9 @@ from backend.settings import REPOSITORY
 from backend.store.brought import BundleRefused, raw_files, read_bundle
 from backend.store.entries import EventRow, sweep_entry, to_records
 from backend.store.upgrade import FIRST_FORM
+from backend.store.ways_files import WaysFiles
 from backend.wire.bundle import bundle
+from backend.wire.ways import MissionWays
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.fence import Nets
 from hardware.readings import Sweep
@@ -135,6 +137,18 @@ async def test_the_same_bundle_again_changes_nothing_and_one_that_differs_is_ref
     assert (await there.get(f"/api/missions/{ID}/events", params={"limit": 5000})).json() == before
 
 
+async def test_a_mission_that_was_deleted_elsewhere_is_in_the_list_here(client, flown, elsewhere):
+    """And not buried with the next look of retention."""
+    there, other = elsewhere
+    await client.delete(f"/api/missions/{flown}")
+    assert (await there.post("/api/bundles", content=await exported(client, flown))).status_code == 201
+    listed = (await there.get("/api/missions")).json()["missions"]
+    assert [one["mission_id"] for one in listed] == [ID]
+    assert [r.event.kind for r in await other.journal.read(ID)][-3:] == [
+        "mission_deleted", "mission_brought_in", "mission_restored"
+    ]  # fmt: skip
+
+
 async def test_a_bundle_of_a_bundle_is_the_same_mission(client, flown, elsewhere):
     """Brought in a second time, with the fact of the first in it."""
     there, _ = elsewhere
@@ -164,6 +178,51 @@ async def test_a_bundle_from_before_brings_the_path_that_it_has(client, flown, e
     assert (reply.status_code, reply.json()["sweeps"]) == (201, 0)
     points = (await there.get(f"/api/missions/{ID}/track")).json()["points"]
     assert [point["lat"] for point in points] == [point.lat_deg for point in PATH]
+
+
+RIVER = {"type": "MultiPolygon", "coordinates": [[[[7.19, 50.61], [7.22, 50.61], [7.22, 50.6101], [7.19, 50.61]]]]}
+ROAD = {"type": "MultiLineString", "coordinates": [[[7.2, 50.6], [7.21, 50.6]]]}
+
+
+def ways_of(**changes: Any) -> bytes:
+    features = [
+        {"type": "Feature", "geometry": ROAD, "properties": {"kind": "road"}},
+        {"type": "Feature", "geometry": RIVER, "properties": {"kind": "barrier"}},
+    ]
+    return MissionWays.model_validate({"name": "roads", "features": features} | changes).model_dump_json().encode()
+
+
+async def test_the_ways_of_a_mission_come_with_it_and_a_bundle_without_them_is_as_it_was(
+    client, flown, elsewhere, settings
+):
+    there, _ = elsewhere
+    assert json.loads(files_of(await exported(client, flown))["bundle.json"])["version"] == 1
+    files = WaysFiles.of_settings(settings)
+    files.directory.mkdir()
+    files.path(ID).write_bytes(ways_of())
+    content = await exported(client, flown)
+    assert json.loads(files_of(content)["bundle.json"])["version"] == 2
+    assert (await there.post("/api/bundles", content=content)).status_code == 201
+    at_home, brought = [(await each.get(f"/api/missions/{ID}/ways")).json() for each in (client, there)]
+    assert brought == at_home
+    assert [one["properties"]["kind"] for one in brought["features"]] == ["road", "barrier"]
+    await there.delete(f"/api/missions/{ID}/ways")
+    assert (await there.post("/api/bundles", content=content)).status_code == 200
+    assert (await there.get(f"/api/missions/{ID}/ways")).json()["features"] == [], "the same again changes nothing"
+
+
+FAR = {"type": "MultiLineString", "coordinates": [[[7.2, 1e308], [7.21, 50.6]]]}
+DEEP = {"type": "GeometryCollection", "geometries": [ROAD]}
+CROSSED = {"type": "MultiPolygon", "coordinates": [[[[0, 0], [1, 1], [1, 0], [0, 1], [0, 0]]]]}
+
+
+@pytest.mark.parametrize("geometry", [FAR, DEEP, CROSSED, RIVER, {"type": "Point", "coordinates": [7, 50]}, {}])
+async def test_hostile_ways_are_refused_with_the_whole_bundle(client, geometry):
+    road = {"type": "Feature", "geometry": geometry, "properties": {"kind": "road"}}
+    for content in (ways_of(features=[road]), b"[" * 100_000, b'{"features": 1e999}'):
+        reply = await client.post("/api/bundles", content=added("ways.geojson", content)(SOUND))
+        assert (reply.status_code, reply.json()["reason"]["name"]) == (422, "ways.geojson"), reply.text
+    assert (await client.get("/api/missions")).json()["missions"] == []
 
 
 def files_of(content: bytes) -> dict[str, bytes]:
@@ -235,7 +294,7 @@ def other_schema(text: bytes) -> bytes:
 
 
 def later_schema(text: bytes) -> bytes:
-    return json.dumps(json.loads(text) | {"version": 2}).encode()
+    return json.dumps(json.loads(text) | {"version": 3}).encode()
 
 
 def renumbered(text: bytes) -> bytes:

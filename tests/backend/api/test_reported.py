@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import httpx
@@ -124,6 +125,23 @@ async def test_one_kept_while_offline_comes_late_and_says_so(client: httpx.Async
     await client.post(f"/api/missions/{mission}/bearings", json=report(1, 0.0, -20.0, 10.0, taken_at_utc=taken))
     (measured,) = await events(client, mission, "bearing_measured")
     assert [remark["code"] for remark in measured["remarks"]] == ["taken_earlier"]
+
+
+@pytest.mark.parametrize("ahead_s", [-7200.0, 7200.0])
+async def test_a_machine_whose_clock_was_set_meanwhile_takes_what_phones_report(
+    app: FastAPI, client: httpx.AsyncClient, ahead_s: float
+) -> None:
+    """The mission's clock stays where it was; when a bearing was taken is counted from now."""
+    mission = await drafted(client)
+    wall = NOW + timedelta(seconds=ahead_s)
+    app.state.services = replace(app.state.services, wall=wall.timestamp)
+    address, taken = f"/api/missions/{mission}/bearings", (wall - timedelta(minutes=20)).isoformat()
+    late = await client.post(address, json=report(1, 0.0, -20.0, 10.0, taken_at_utc=taken))
+    now = await client.post(address, json=report(2, 0.0, -20.0, 10.0, taken_at_utc=wall.isoformat()))
+    assert (late.status_code, now.status_code) == (201, 201), late.text + now.text
+    measured = await events(client, mission, "bearing_measured")
+    assert [one["taken_at_s"] for one in measured] == pytest.approx([NOW.timestamp() - 1200.0, NOW.timestamp()])
+    assert [[remark["code"] for remark in one["remarks"]] for one in measured] == [["taken_earlier"], []]
 
 
 @pytest.mark.parametrize(

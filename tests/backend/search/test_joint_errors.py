@@ -12,6 +12,7 @@ from ground import AREA, FRAME, HOME, towards
 
 from backend.events import BearingMeasured, BeliefUpdated, PersonSource, SilenceFact, SweepRejected
 from backend.reasons.search import BearingsCorrected
+from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization, source_name
 from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planning import foreseen
@@ -185,6 +186,22 @@ def test_a_specification_of_before_has_the_priors_of_before() -> None:
         assert known == {}
         assert otherwise.rate == pytest.approx(rates)
         assert otherwise.scale == pytest.approx([0.7, 1.0, 1.45])
+
+
+@pytest.mark.parametrize("errors", ["independent", "joint"])
+@pytest.mark.parametrize("outliers", [5e-324, 1e-300, 1e-100])
+def test_outliers_that_are_next_to_impossible_leave_a_belief_of_numbers(errors: str, outliers: float) -> None:
+    """Bearings that contradict each other are then next to impossible, too, and the belief says where it can."""
+    sensor = SensorSpec.model_validate({"bearing_errors": errors, "outlier_probability": outliers})
+    if errors == "joint":
+        sensor = sensor.model_copy(update={"learned": errors_now((), sensor, "craft-1", "yagi")})
+    found = localization(MissionSpec(name="m", area=AREA, sensor=sensor), HOME)
+    apart = [b.model_copy(update={"bearing_deg": (b.bearing_deg + 70.0 * k) % 360.0}) for k, b in enumerate(turned(0))]
+    for measured in (apart[:3], apart, [*apart, *apart[:4]]):
+        fact, belief = found.belief_fact(measured)
+        assert belief.density.sum() == pytest.approx(1.0)
+        assert fact.estimate is not None
+        assert math.isfinite(fact.estimate.expected_rmse_m)
 
 
 def test_nothing_learned_yet_has_about_the_mean_rate_that_is_specified() -> None:

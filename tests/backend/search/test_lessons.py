@@ -217,6 +217,15 @@ def test_other_sources_are_assumed_to_be_what_they_were_when_the_mission_was_wri
     assert others[2].spread_weight == pytest.approx(learned.spread_weight)
 
 
+def test_a_mission_of_before_without_outliers_assumes_the_same_of_others_as_it_did() -> None:
+    """One rate then as now: it could not say which of the two it is, and keeps what its journal was folded with."""
+    sensor = SensorSpec(bearing_errors="joint", outlier_probability=0.0)
+    mine = sensor.model_copy(update={"learned": errors_now((), sensor, FIRST_CRAFT, ANTENNA)})
+    others = priors_of(mine)[1]
+    assert others.rate == pytest.approx([0.003])
+    assert others.spread_weight == pytest.approx([1 / 6] * 6)
+
+
 def test_a_flight_without_a_bearing_teaches_nothing() -> None:
     assert taught("m1", ()) is None
     assert mean_bias([]) is None

@@ -11,13 +11,15 @@ from contextlib import suppress
 import pytest
 from sqlalchemy import Connection, make_url
 
-from backend.events import HoldOrdered, MissionDrafted
+from backend.events import HoldOrdered, MissionDrafted, Recorded
 from backend.ports import JournalUnavailable
 from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy
 from backend.spec import MissionSpec, Polygon
 from backend.store import delivery, patience
+from backend.store.brought import Brought
 from backend.store.delivery import DatabaseAway
-from backend.store.entries import Entry
+from backend.store.digest import fold
+from backend.store.entries import Entry, to_row
 from backend.store.journal import SqlJournal
 from backend.store.patience import StarvedError
 from backend.store.reading import unanswered
@@ -53,6 +55,12 @@ async def until_ok(journal: SqlJournal) -> None:
     watch.cancel()
     with suppress(asyncio.CancelledError):
         await watch
+
+
+def brought_of(mission_id: str, recorded: Sequence[Recorded]) -> Brought:
+    renamed = [record.model_copy(update={"mission_id": mission_id}) for record in recorded]
+    rows = tuple(to_row(record.seq, record.at_utc, record.event) for record in renamed)
+    return Brought(mission_id, rows, fold(None, renamed), (), (), "crossfix")
 
 
 async def flown(journal: SqlJournal, steps: int) -> None:
@@ -109,6 +117,32 @@ async def test_a_file_that_another_program_writes_to_is_taken_and_not_away(bench
     other.close()
     await until_ok(journal)
     assert len(await (await bench.open("other.spool")).read("m")) == 2
+
+
+async def test_a_flight_does_not_wait_for_a_bundle_that_is_brought_in(bench, monkeypatch) -> None:
+    """Its facts go to the spool while the bundle's transaction has the file."""
+    journal = await bench.open()
+    await flown(journal, 0)
+    begun, go_on = asyncio.Event(), asyncio.Event()
+
+    async def long(*_: object) -> None:
+        begun.set()
+        await go_on.wait()
+
+    monkeypatch.setattr("backend.store.journal.bring_in", long)
+    recorded = await journal.read("m")
+    brought = brought_of("elsewhere", recorded)
+    bringing = asyncio.create_task(journal.bring_in(brought, "anna"))
+    again = asyncio.create_task(journal.bring_in(brought_of("another", recorded), "anna"))
+    try:
+        async with asyncio.timeout(20):
+            await begun.wait()
+            await journal.append("m", [HoldOrdered(craft_id="craft-1", by="anna", reason=None)])
+        assert not bringing.done()
+        assert not again.done()
+    finally:
+        go_on.set()
+    assert (await bringing, await again) == (True, True)
 
 
 async def test_sqlite_that_is_late_on_an_idle_machine_waits_for_its_disk(bench, monkeypatch) -> None:
