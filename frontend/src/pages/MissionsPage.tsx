@@ -82,6 +82,11 @@ function Row({ mission, editing, onEdit }: RowProperties) {
           </span>
         ))}
         {mission.notes && <p class="muted notes">{mission.notes}</p>}
+        {mission.gone_at_utc && (
+          <p class="muted" data-testid="gone-at">
+            {t("missions.goneAt", { date: mission.gone_at_utc.slice(0, 10) })}
+          </p>
+        )}
         {editing && <LabelForm mission={mission} onDone={() => onEdit(null)} />}
       </td>
       <td>
