@@ -1,0 +1,152 @@
+"""Motion only where something moved: a screen at rest draws nothing, and who asked for less motion gets none."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import expect
+from screen import OpenScreen, Screen
+from served import Server
+
+from tests.browser.stock import stored
+from tests.browser.sweep import SIZES
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+
+COUNT_FRAMES = """
+window.framesAsked = 0;
+const ask = window.requestAnimationFrame;
+window.requestAnimationFrame = (draw) => { window.framesAsked += 1; return ask.call(window, draw); };
+"""
+
+REST_MS = 2500
+
+SHOWN = {
+    "missions": "#/",
+    "review": "#/mission/{flown}",
+    "report": "#/report/{flown}",
+    "compare": "#/compare/{flown}",
+    "new": "#/new",
+    "calibration": "#/calibration",
+    "maps": "#/maps",
+    "people": "#/people",
+}
+"""Screens on which nothing moves while nobody touches them: none of them shows a vehicle in flight."""
+
+CLOCKS = "[data-testid=indicators], .state-more { visibility: hidden }"
+"""What the vehicle tells, the age of that and the time: they are written anew, and that is all."""
+
+
+def picture(screen: Screen) -> np.ndarray:
+    shot = screen.page.screenshot(animations="allow", caret="initial")
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+
+def at_rest(screen: Screen) -> np.ndarray:
+    """As soon as two pictures after one another are the same: a busy machine goes on drawing for seconds."""
+    before, until = picture(screen), time.monotonic() + 60.0
+    while time.monotonic() < until:
+        screen.page.wait_for_timeout(500)
+        now = picture(screen)
+        if np.array_equal(now, before):
+            return now
+        before = now
+    raise AssertionError("the page does not come to rest")
+
+
+@pytest.mark.parametrize("size", ["laptop", "tablet", "phone"])
+def test_a_screen_at_rest_stays_as_it_is(server: Server, open_screen: OpenScreen, size: str) -> None:
+    width, height = SIZES[size]
+    flown = stored(server, "demo-px4-open")
+    screen = open_screen(server, viewport={"width": width, "height": height})
+    page = screen.page
+    page.add_init_script(COUNT_FRAMES)
+    for name, address in SHOWN.items():
+        screen.go("#/health")
+        screen.go(address.format(flown=flown))
+        page.reload()
+        page.add_style_tag(content=CLOCKS)
+        page.wait_for_load_state("networkidle")
+        before = at_rest(screen)
+        asked = screen.evaluate("framesAsked")
+        page.wait_for_timeout(REST_MS)
+        assert screen.evaluate("document.getAnimations().length") == 0, f"{name}: something is animated"
+        assert np.array_equal(picture(screen), before), f"{name}: something moves"
+        drawn = screen.evaluate("framesAsked") - asked
+        # telemetry of the vehicle on the ground, ten times a second at most, and no frame for anything else
+        assert drawn <= 12 * REST_MS / 1000, f"{name}: {drawn} frames were asked for while nothing moved"
+
+
+POSITIONS = """async () => {
+  const at = () => {
+    const { x, y } = document.querySelector("[data-testid=vehicle]").getBoundingClientRect();
+    return `${Math.round(x)} ${Math.round(y)}`;
+  };
+  const seen = [at()];
+  document.querySelector("[data-testid=map-fit]").click();
+  const until = performance.now() + 1500;
+  while (performance.now() < until) {
+    await new Promise((done) => requestAnimationFrame(done));
+    if (seen.at(-1) !== at()) seen.push(at());
+  }
+  return seen;
+}"""
+"""Where the vehicle is seen on the map, one after another, when all of it is to be shown."""
+
+
+@pytest.mark.parametrize(("wish", "glides"), [("no-preference", True), ("reduce", False)])
+def test_who_asks_for_less_motion_sees_the_map_jump(
+    server: Server, open_screen: OpenScreen, wish: str, glides: bool
+) -> None:
+    screen = open_screen(server, f"#/mission/{stored(server, 'demo-px4-open')}", reduced_motion=wish)
+    screen.map_ready()
+    expect(screen.part("vehicle")).to_be_visible()
+    x, y = screen.map_point(0.5, 0.5)
+    screen.page.mouse.move(x, y)
+    screen.page.mouse.wheel(0, 400)
+    screen.page.wait_for_timeout(1500)
+    seen = screen.evaluate(POSITIONS)
+    assert len(seen) > 1, "the map shows another part than before"
+    assert (len(seen) > 2) == glides, seen
+
+
+HEIGHTS = """
+window.mapHeights = [];
+setInterval(() => {
+  const map = document.querySelector("[data-testid=map]");
+  const lost = document.querySelector("[data-testid=state-words]")?.classList.contains("stale");
+  const old = document.querySelectorAll(".indicator.old").length;
+  if (map && !lost) mapHeights.push([old, map.clientHeight]);
+}, 50);
+"""
+"""How high the map is while the page still hears the server, and how many values are old then."""
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.3])
+def test_the_map_of_a_phone_stays_as_high_when_telemetry_comes_late(
+    server: Server, open_screen: OpenScreen, scale: float
+) -> None:
+    width, height = SIZES["phone"]
+    screen = open_screen(
+        server, f"#/mission/{server.draft()}", {"scale": scale}, viewport={"width": width, "height": height}
+    )
+    screen.map_ready()
+    expect(screen.page.locator(".indicator.fresh")).to_have_count(5)
+    screen.page.wait_for_timeout(1000)
+    screen.evaluate(HEIGHTS)
+    screen.page.wait_for_timeout(1000)
+    os.kill(server.process.pid, signal.SIGSTOP)
+    try:
+        expect(screen.page.locator(".indicator.old").first).to_be_attached(timeout=20_000)
+        screen.page.wait_for_timeout(1500)
+    finally:
+        os.kill(server.process.pid, signal.SIGCONT)
+    heights = screen.evaluate("mapHeights")
+    assert {old > 0 for old, _ in heights} == {True, False}, "some values became old"
+    assert len({tall for _, tall in heights}) == 1, heights
