@@ -1,8 +1,8 @@
 """Why something is so, or cannot be: a frozen dataclass with a code and its values in SI units.
 
 Logic looks at the class or at the values, never at words. The English sentence stands beside the class; other languages
-have a table keyed by `code`. How a value is shown follows from the end of its name: `_m`, `_m2`, `_m_s`, `_s`, `_time_s`
-(minutes and seconds, as the page writes how long a search takes), `_deg`, `_percent`, `_hz`, `_db`, `_bytes`.
+have a table keyed by `code`. How a value is shown follows from the end of its name: `_m`, `_m2`, `_m_s`, `_s`, `_deg`,
+`_percent`, `_hz`, `_db`, `_bytes`, and `_time_s`, which the page writes as minutes and seconds everywhere.
 
 A sentence is complete: it begins with a capital and ends with its mark, so that nobody mends it where it is shown.
 It may hold
