@@ -2,7 +2,7 @@
 
 Logic looks at the class or at the values, never at words. The English sentence stands beside the class; other languages
 have a table keyed by `code`. How a value is shown follows from the end of its name: `_m`, `_m2`, `_m_s`, `_s`, `_deg`,
-`_percent`, `_hz`, `_db`, `_bytes`.
+`_percent`, `_hz`, `_db`, `_bytes`, and `_time_s`, which the page writes as minutes and seconds everywhere.
 
 A sentence is complete: it begins with a capital and ends with its mark, so that nobody mends it where it is shown.
 It may hold
@@ -159,11 +159,18 @@ def _time(value: float, decimals: int | None) -> str:
     return f"{value / 60:.0f} min" if abs(value) >= 300 and decimals is None else _unit("s", 0)(value, decimals)
 
 
+def _clock(value: float, _decimals: int | None) -> str:
+    minutes, seconds = divmod(round(value), 60)
+    hours, rest = divmod(minutes, 60)
+    return f"{hours}:{rest:02d}:{seconds:02d}" if hours else f"{minutes}:{seconds:02d}"
+
+
 FORMS: tuple[tuple[str, Callable[[float, int | None], str]], ...] = (
     ("_deg_s", _unit("degrees/s", 0)),
     ("_m_s", _unit("m/s", 1)),
     ("_m2", _area),
     ("_m", _length),
+    ("_time_s", _clock),
     ("_s", _time),
     ("_deg", _unit("degrees", 0)),
     ("_percent", _unit("%", 0)),

@@ -14,6 +14,7 @@ from backend.ports import TrackPoint
 from backend.search.state import EmitterState, SearchState, evolve
 from backend.store.digest import EPOCH, MissionDigest
 from backend.store.entries import SweepEntry
+from backend.store.retention import DELETED_DAYS
 from backend.wire.resources import EmitterFound, Mission, MissionSummary, SweepRecord, TrackFact
 from planner.reasons import NoBearingYet
 
@@ -38,6 +39,7 @@ def _utc(at_us: int | None) -> datetime | None:
 
 
 def _summary(digest: MissionDigest, iq_bytes: int) -> dict[str, object]:
+    deleted = _utc(digest.entry.deleted_at_us)
     return {
         "mission_id": digest.mission_id,
         "name": digest.name,
@@ -54,7 +56,8 @@ def _summary(digest: MissionDigest, iq_bytes: int) -> dict[str, object]:
         "last_seq": digest.last_seq,
         "tags": digest.entry.tags.splitlines(),
         "notes": digest.entry.notes,
-        "deleted_at_utc": _utc(digest.entry.deleted_at_us),
+        "deleted_at_utc": deleted,
+        "gone_at_utc": None if deleted is None else deleted + timedelta(days=DELETED_DAYS),
         "sketch": digest.entry.sketch,
         "iq_bytes": iq_bytes,
     }

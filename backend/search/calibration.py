@@ -96,6 +96,9 @@ class Calibrated:
     error_ratio: float | None
     forecast_90: Share
     sharpness_deg: float | None
+    sharpness_m: float | None
+    forecast_90_s: float | None
+    forecast_took_s: float | None
     antennas: list[str]
     crafts: list[str]
     needed: int
@@ -127,7 +130,8 @@ def calibrate(missions: Mapping[str, tuple[str, Told]], craft: str, antenna: str
         if craft in ("", error.craft_id)
     ]
     legs = [leg for _, one in asked.values() for leg in one.legs if craft in ("", leg.craft_id)]
-    kept = [held for _, one in asked.values() for held in one.forecasts]
+    forecasts = [forecast for _, one in asked.values() for forecast in one.forecasts]
+    kept = [one.took_s <= one.time_90_s for one in forecasts]
     errors, beside, offset = _judged(raw)
     inside = [abs(one.error_deg) / one.sigma_deg for one in errors]
     outliers = sum(one.outlier for one in errors)
@@ -143,12 +147,19 @@ def calibrate(missions: Mapping[str, tuple[str, Told]], craft: str, antenna: str
         c95=wilson(sum(one.inside for one in fixes), len(fixes)),
         error_ratio=math.sqrt(float(np.mean(np.square(ratios)))) if ratios else None,
         forecast_90=wilson(sum(kept), len(kept)),
-        sharpness_deg=float(np.mean([one.sigma_deg for one in errors])) if errors else None,
+        sharpness_deg=_mean([one.sigma_deg for one in errors]),
+        sharpness_m=_mean([one.stated_m for one in fixes]),
+        forecast_90_s=_mean([one.time_90_s for one in forecasts]),
+        forecast_took_s=_mean([one.took_s for one in forecasts]),
         antennas=sorted({name for _, one in missions.values() for name in one.antennas}),
         crafts=sorted({name for _, one in missions.values() for name in one.crafts}),
         needed=BEARINGS_NEEDED,
         suggested=_suggested(beside, len(raw), offset, legs),
     )
+
+
+def _mean(numbers: Sequence[float]) -> float | None:
+    return float(np.mean(numbers)) if numbers else None
 
 
 def _off(angle_deg: FloatArray) -> FloatArray:

@@ -42,7 +42,7 @@ FACTS_NEEDED = (
     "belief_updated",
     "truth_noted",
 )
-RECKONING = 1
+RECKONING = 2
 """Of `told`: one more with every change of what it says, since what it said is kept."""
 LEAST_SIGMA_DEG = 0.1
 
@@ -89,9 +89,17 @@ class Leg:
 
 
 @dataclass(frozen=True, slots=True)
+class ToldForecast:
+    """What a plan said of the time until localized, and what it took from there."""
+
+    time_90_s: float
+    took_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Told:
     """not_found: emitters that were looked for in vain. flown: by craft, of every craft that has an error. forecasts:
-    of each of a search that localized, whether the 90 % time held."""
+    of a search that localized."""
 
     crafts: list[str]
     antennas: list[str]
@@ -100,7 +108,7 @@ class Told:
     flown: dict[str, Flown]
     errors: list[ToldError]
     legs: list[Leg]
-    forecasts: list[bool]
+    forecasts: list[ToldForecast]
 
 
 def sound(kept: Told) -> bool:
@@ -110,6 +118,7 @@ def sound(kept: Told) -> bool:
         *(number for one in kept.flown.values() for number in (one.in_file_deg, one.mounted_deg)),
         *(number for error in kept.errors for number in (error.error_deg, error.sigma_deg)),
         *(number for leg in kept.legs for number in (leg.distance_m, leg.time_s)),
+        *(number for one in kept.forecasts for number in (one.time_90_s, one.took_s)),
     ]
     spreads = [*(fix.stated_m for fix in kept.fixes), *(error.sigma_deg for error in kept.errors)]
     flew = all(error.craft_id in kept.flown for error in kept.errors)
@@ -183,10 +192,10 @@ def _legs(recorded: Sequence[Recorded]) -> Iterable[Leg]:
                 yield Leg(craft_id, math.hypot(east, north), after.flight_time_s)
 
 
-def _forecasts(recorded: Sequence[Recorded]) -> Iterable[bool]:
+def _forecasts(recorded: Sequence[Recorded]) -> Iterable[ToldForecast]:
     done = next((r.at_utc for r in recorded if isinstance(r.event, BeliefUpdated) and r.event.localized), None)
     if done is None:
         return
     for record in recorded:
         if isinstance(record.event, PlanChosen) and record.event.time_90_s is not None and record.at_utc < done:
-            yield (done - record.at_utc).total_seconds() <= record.event.time_90_s
+            yield ToldForecast(record.event.time_90_s, (done - record.at_utc).total_seconds())

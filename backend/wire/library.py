@@ -115,8 +115,10 @@ class SuggestedSensor(Model):
 class Calibration(Model):
     """Of all checked missions of a craft and antenna, or of all. within_1_sigma and within_2_sigma: of bearings, offset
     not taken off (68 and 95 % when sigma is right). c95: of fixes. error_ratio: root mean square of error over stated
-    error of the fixes. forecast_90: times that the 90 % figure held. sharpness_deg: mean stated sigma.
-    antennas: all there are, to choose from. suggested None: fewer than `needed` bearings."""
+    error of the fixes. forecast_90: times that the 90 % figure held. Sharpness, all of them means of what was stated:
+    sharpness_deg, sigma of bearings; sharpness_m, expected error of fixes; forecast_90_s, the 90 % figure, and
+    forecast_took_s, what it took then. antennas: all there are, to choose from. suggested None: fewer than `needed`
+    bearings."""
 
     missions: int
     not_found: int
@@ -129,6 +131,9 @@ class Calibration(Model):
     error_ratio: float | None
     forecast_90: ShareFact
     sharpness_deg: float | None
+    sharpness_m: float | None
+    forecast_90_s: float | None
+    forecast_took_s: float | None
     antennas: list[str]
     crafts: list[str]
     needed: int

@@ -64,8 +64,8 @@ class Defaults(Model):
 
 class MissionSummary(Model):
     """One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
-    `ended_at_utc`, `outcome`: None until it happened. `iq_bytes`: of the IQ that can be exported as SigMF, 0: none was
-    kept."""
+    `ended_at_utc`, `outcome`: None until it happened. `gone_at_utc`: until when a deleted one can be restored.
+    `iq_bytes`: of the IQ that can be exported as SigMF, 0: none was kept."""
 
     mission_id: str
     name: str
@@ -83,6 +83,7 @@ class MissionSummary(Model):
     tags: list[str]
     notes: str
     deleted_at_utc: datetime | None
+    gone_at_utc: datetime | None
     sketch: Sketch
     iq_bytes: int
 

@@ -1,8 +1,10 @@
-"""Text tables from the field: comma, semicolon or tab separated, `#` comments, any line ends, lines numbered."""
+"""Text tables from the field: comma, semicolon or tab separated, `#` comments, any line ends, lines numbered; between
+semicolons or tabs a decimal comma, as spreadsheets write it in half of the world."""
 
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +12,8 @@ from pathlib import Path
 from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnreadable, FileUnusable, Quantity
 from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
 
 LONGEST_CELL, MOST_NAMED = 60, 20
 """Characters of a cell that a reason shows, and how many tags it names."""
@@ -39,8 +43,9 @@ class Row:
         """The cell as a float, None when it is missing, empty or no number."""
         if column >= len(self.cells):
             return None
+        cell = self.cells[column]
         try:
-            return float(self.cells[column])
+            return float(cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
         except ValueError:
             return None
 
@@ -93,8 +98,15 @@ def read_table(path: Path | str) -> Table:
 
 
 def _cells(line: str) -> tuple[str, ...]:
-    """Split at commas; at semicolons or tabs when there is no comma."""
-    delimiter = next((d for d in (",", ";", "\t") if d in line), ",")
+    """Split at semicolons or tabs when every comma between them is a decimal one, at commas else."""
+    for delimiter in (";", "\t"):
+        cells = _split(line, delimiter)
+        if len(cells) > 1 and all("," not in cell or _DECIMAL_COMMA.fullmatch(cell) for cell in cells):
+            return cells
+    return _split(line, ",")
+
+
+def _split(line: str, delimiter: str) -> tuple[str, ...]:
     return tuple(cell.strip().strip("'\"") for cell in next(csv.reader([line], delimiter=delimiter)))
 
 

@@ -109,7 +109,7 @@ class ExpectedErrorTooLarge:
     code: Literal["expected_error_too_large"] = "expected_error_too_large"
 
     english: ClassVar[Words] = Words(
-        "The expected error is {expected_error_m:1}; it must fall below {threshold_m:1}.",
+        "The emitter is {expected_error_m:1} from the estimate on average; that must fall below {threshold_m:1}.",
         "Take another bearing.",
     )
 

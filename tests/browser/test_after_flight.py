@@ -6,16 +6,18 @@ from __future__ import annotations
 import gzip
 import json
 import math
+import re
 from datetime import timedelta
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
 from playwright.sync_api import Locator, expect
 from screen import OpenScreen, Screen
 from served import REPOSITORY, Server
 
-from backend.events import BearingMeasured, BeliefUpdated, Event, Recorded, TruthNoted
+from backend.events import BearingMeasured, BeliefUpdated, Event, PlanChosen, Recorded, TruthNoted
 from backend.spec import Place
 from backend.store.brought import raw_files
 from backend.store.entries import EventRow, to_records
@@ -84,6 +86,7 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     suggestion = part("suggestion")
     expect(suggestion).to_contain_text("read +6.0° ± ")
     suggested = server.get("/api/calibration")["suggested"]
+    how_sharp(server, screen)
     expect(screen.page.locator(".error-outlier")).to_have_count(3)
     expect(screen.page.locator(".error-right")).to_have_count(15)
     for _ in range(2):
@@ -111,6 +114,33 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     expect(part("profile-back")).to_have_count(0)
     part("profile").select_option("quad with yagi")
     expect(offset).to_have_value("0")
+
+
+def how_sharp(server: Server, screen: Screen) -> None:
+    """Beside how often it was right stands how much was stated: of bearings, places and times."""
+    events = [record.event for record in FLOWN]
+    sigmas = [e.sigma_deg for e in events if isinstance(e, BearingMeasured)]
+    done = next(r.at_utc for r in FLOWN if isinstance(r.event, BeliefUpdated) and r.event.localized)
+    said = [
+        (r.event.time_90_s, (done - r.at_utc).total_seconds())
+        for r in FLOWN
+        if isinstance(r.event, PlanChosen) and r.event.time_90_s is not None and r.at_utc < done
+    ]
+    stated, took = np.mean(said, axis=0)
+    held = round(100 * sum(took <= stated for stated, took in said) / len(said))
+
+    def minutes(seconds: float) -> str:
+        return "{}:{:02d}".format(*divmod(round(seconds), 60))
+
+    estimate = [e for e in events if isinstance(e, BeliefUpdated)][-1].estimate
+    assert estimate is not None
+    lines = screen.page.locator(".reliabilities tbody tr")
+    shown = [line.get_by_test_id("sharpness").inner_text() for line in lines.all()]
+    assert shown[0] == f"±{np.mean(sigmas):.1f}°"
+    assert re.fullmatch(rf"±{estimate.expected_rmse_m:.1f}\s?m", shown[2])
+    assert shown[3] == f"{minutes(stated)}; it took {minutes(took)}"
+    assert lines.nth(3).locator("td").first.inner_text() == f"{held} %"
+    assert server.get("/api/calibration")["forecast_90"]["of"] == 6 * len(said)
 
 
 def test_missions_are_found_by_a_rectangle_over_them(server: Server, open_screen: OpenScreen) -> None:
@@ -289,3 +319,48 @@ def test_bearings_that_were_taken_elsewhere_are_brought_in_from_a_file(
     part("recording-send").click()
     expect(part("recording-found")).to_contain_text("imported before")
     assert len([e for e in server.events(mission_id) if e["kind"] == "bearing_measured"]) == 5
+
+
+def test_our_own_bearing_files_are_brought_in_on_the_page(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    """The file that a flown mission offers, and a table that somebody typed, into a search that has flown nowhere."""
+    flown = bring_in(server, checked("file-of", 0.0))
+    screen = open_screen(server)
+    part = screen.part
+    row(screen, flown).locator("details.export summary").click()
+    with screen.page.expect_download() as taken:
+        row(screen, flown).get_by_test_id("export-csv").click()
+    exported = tmp_path / "flown.csv"
+    taken.value.save_as(exported)
+    typed = tmp_path / "typed.csv"
+    typed.write_bytes(
+        "\ufefflat;lon;bearing_deg;sigma_deg\r\n50,6236;7,2032;47,5;8\r\n50,6250;7,2050;nowhere;8\r\n"
+        "50,6245;7,2064;231;12,5\r\n".encode()
+    )
+    theirs = [e for e in server.events(flown) if e["kind"] == "bearing_measured"]
+
+    spec = server.get(f"/api/missions/{flown}")["spec"]
+    here = httpx.post(server.url.rstrip("/") + "/api/missions", json=spec, timeout=20).json()["mission_id"]
+    screen.open(here)
+    part("recording").locator("summary").first.click()
+    for path, bearings in ((exported, len(theirs)), (typed, 2)):
+        part("recording-files").set_input_files(path)
+        part("recording-send").click()
+        expect(part("recording-found").locator("ul").first.locator("li")).to_have_count(bearings)
+    expect(part("recording-remarks")).to_contain_text("Line 3 of typed.csv")
+    measured = [e for e in server.events(here) if e["kind"] == "bearing_measured"]
+    ours, read = measured[: len(theirs)], measured[len(theirs) :]
+    assert [(e["place"], e["bearing_deg"]) for e in ours] == [
+        (
+            {name: pytest.approx(value, abs=1e-7) for name, value in e["place"].items()},
+            pytest.approx(e["bearing_deg"], abs=1e-5),
+        )
+        for e in theirs
+    ]
+    assert [(e["place"], e["bearing_deg"], e["sigma_deg"]) for e in read] == [
+        ({"lat": 50.6236, "lon": 7.2032}, 47.5, 8.0),
+        ({"lat": 50.6245, "lon": 7.2064}, 231.0, 12.5),
+    ]
+    expect(screen.row("bearing_measured")).to_have_count(len(measured))
+    screen.expect_belief(len(measured))

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
+import msgspec.msgpack
 import pytest
-from playwright.sync_api import expect
+import zstandard
+from playwright.sync_api import WebSocket, expect
 from screen import OpenScreen, Screen
 from served import Server
 
+from hardware.frame import LocalFrame
+from hardware.readings import Place
 from tests.browser.stock import stored
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
@@ -87,3 +92,66 @@ def test_whoever_ordered_something_is_named_once_in_a_sentence(
     named = [len(by.findall(row)) for row in told]
     assert sum(named) > 8, "who ordered it is said"
     assert [row for row, times in zip(told, named, strict=True) if times > 1] == []
+
+
+class SceneLabels:
+    """The numbers of places in the 3D picture, with where they stand (m east and north of the home): what its viewer is
+    sent, since a picture's digits are pixels."""
+
+    def __init__(self, screen: Screen) -> None:
+        self.shown: dict[str, str] = {}
+        self.at: dict[str, tuple[float, float]] = {}
+        screen.page.on("websocket", self._listen)
+
+    def _listen(self, socket: WebSocket) -> None:
+        if "/scene/" in socket.url:
+            socket.on("framereceived", self._read)
+
+    def _read(self, frame: str | bytes) -> None:
+        if not isinstance(frame, bytes):
+            return
+        size = int.from_bytes(frame[8:16], "little")
+        packed = zstandard.ZstdDecompressor().decompress(frame[16 : 16 + size])
+        for message in msgspec.msgpack.decode(packed)["messages"]:
+            self._note(message)
+
+    def _note(self, message: dict[str, Any]) -> None:
+        name = message.get("name", "")
+        if "places/" not in name:
+            return
+        match message["type"]:
+            case "LabelMessage":
+                self.shown[name] = message["props"]["text"]
+            case "SetPositionMessage":
+                self.at[name] = (message["position"][0], message["position"][1])
+            case "RemoveSceneNodeMessage":
+                self.shown.pop(name, None)
+            case _:
+                pass
+
+    def wait_for(self, screen: Screen, numbers: list[str]) -> None:
+        for _ in range(600):
+            if sorted(self.shown.values()) == numbers:
+                return
+            screen.page.wait_for_timeout(200)
+        raise AssertionError(f"{self.shown} instead of {numbers}")
+
+
+def test_a_bearing_has_the_number_of_its_place_in_the_3d_picture(server: Server, open_screen: OpenScreen) -> None:
+    mission = stored(server, JOURNAL)
+    told = server.events(mission)
+    taken = [e for e in told if e["kind"] == "bearing_measured"]
+    home = next(e["home"] for e in told if e["kind"] == "mission_started")
+    frame = LocalFrame(Place(**home))
+    screen = open_screen(server)
+    labels = SceneLabels(screen)
+    screen.open(mission)
+    screen.row("bearing_measured").last.click()
+    screen.part("scene-switch").click()
+    labels.wait_for(screen, [str(one["place_number"]) for one in taken])
+    stands = {text: labels.at[name] for name, text in labels.shown.items()}
+    assert stands == {
+        str(one["place_number"]): pytest.approx(frame.to_enu(Place(**one["place"])), abs=0.1) for one in taken
+    }
+    screen.row("bearing_measured").nth(1).click()
+    labels.wait_for(screen, ["2", "3"])

@@ -29,7 +29,7 @@ def test_codes_are_unique() -> None:
 
 def test_values_are_written_with_their_units() -> None:
     assert text_of(QuickestPlace(134.4, 11.6, 34)) == (
-        "Localized in about 134 s by way of this place, 12 s sooner than by any other of 34 places tried."
+        "Localized in about 2:14 by way of this place, 12 s sooner than by any other of 34 places tried."
     )
     assert text_of(TooFewPlacesAgree(1, 3, 2)) == "1 of 3 places agrees on the estimate; 2 are needed."
 

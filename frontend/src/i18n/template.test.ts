@@ -5,7 +5,7 @@ const TABLE: Record<string, Words> = {
   windy: { text: "Wind of {speed_m_s} from {side?n=the north|*=elsewhere}{until?none=|*= until noon}.", remedy: "" },
   far: { text: "{distance_m} away, {area_m2}, {near_m:1}.", remedy: "Fly to {lat_deg@lon_deg}." },
   many: { text: "{places|place|places}: {names}; {kinds?a=first|b=second}.", remedy: "" },
-  timed: { text: "{age_s}, {age_s:1}, {turn_deg}, {turn_deg_s}, {share_percent}.", remedy: "" },
+  timed: { text: "{age_s}, {age_s:1}, {left_time_s}, {turn_deg}, {turn_deg_s}, {share_percent}.", remedy: "" },
   heard: { text: "{carrier_hz}, {rate_hz}, {level_db}, {size_bytes}, {share}, {given:2}.", remedy: "" },
   because: { text: "Not now. {because}", remedy: "{because!remedy}" },
 };
@@ -32,9 +32,9 @@ describe("a reason's sentence", () => {
   });
 
   it("has times, angles and shares", () => {
-    const timed = { code: "timed", age_s: 412.3, turn_deg: 90, turn_deg_s: 30, share_percent: 12.5 };
-    expect(say(timed)).toBe("7 min, 412.3 s, 90 degrees, 30 degrees/s, 12 %.");
-    expect(say({ ...timed, age_s: 4 }, german)).toBe("4 s, 4,0 s, 90 Grad, 30 Grad/s, 12 %.");
+    const timed = { code: "timed", age_s: 412.3, left_time_s: 236.4, turn_deg: 90, turn_deg_s: 30, share_percent: 12.5 };
+    expect(say(timed)).toBe("7 min, 412.3 s, 3:56, 90 degrees, 30 degrees/s, 12 %.");
+    expect(say({ ...timed, age_s: 4 }, german)).toBe("4 s, 4,0 s, 3:56, 90 Grad, 30 Grad/s, 12 %.");
   });
 
   it("has frequencies, levels, sizes and plain numbers", () => {

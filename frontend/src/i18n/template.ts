@@ -1,7 +1,7 @@
 // The template language of the reasons' sentences. planner/reason.py has its grammar and writes the same English.
 import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import type { Language } from "../units/locale";
-import { formatArea, formatLength, formatSpeed, type UnitSystem } from "../units/quantities";
+import { formatArea, formatDuration, formatLength, formatSpeed, type UnitSystem } from "../units/quantities";
 
 /** text: what is so. remedy: how to mend it, empty when there is nothing to do. */
 export interface Words {
@@ -123,6 +123,7 @@ const FORMS: readonly (readonly [string, Form])[] = [
   ["_m_s", imperial(unit("m/s", 1), formatSpeed)],
   ["_m2", imperial(grown(1e5, unit("m²", 0), unit("km²", 2, 1e6)), formatArea)],
   ["_m", imperial(grown(1e3, unit("m", 0), unit("km", 1, 1e3)), formatLength)],
+  ["_time_s", (value, _decimals, shown) => formatDuration(Number(digits(value, 0, { ...shown, language: "en" })))],
   ["_s", (value, decimals, shown) => (decimals === null ? grown(300, seconds, minutes) : seconds)(value, decimals, shown)],
   ["_deg", degrees("")],
   ["_percent", unit("%", 0)],

@@ -8,14 +8,21 @@ import { ProblemBox } from "../panels/ProblemNote";
 import { type Calibration, calibration, type Suggested } from "../sources/libraryApi";
 import { missionAddress } from "../state/route";
 import { settings } from "../state/settings";
-import { formatLength, formatNumber, signedDegrees } from "../units/quantities";
+import { formatDuration, formatLength, formatNumber, signedDegrees } from "../units/quantities";
 import type { Problem } from "../wire";
 import "../style/review.css";
 
 type Share = Calibration["c95"];
 
-/** A bar with its interval and the share that is wanted. */
-function Reliability({ label, share, wanted }: { label: MessageKey; share: Share; wanted: number | null }) {
+interface ReliabilityProperties {
+  label: MessageKey;
+  share: Share;
+  wanted: number | null;
+  sharpness?: string | null;
+}
+
+/** A bar with its interval and the share that is wanted; how much was stated on average: what is vague is right easily. */
+function Reliability({ label, share, wanted, sharpness = null }: ReliabilityProperties) {
   const percent = (value: number) => Math.round(100 * value);
   return (
     <tr data-testid="reliability" data-of={share.of}>
@@ -32,6 +39,7 @@ function Reliability({ label, share, wanted }: { label: MessageKey; share: Share
         {t("calibration.interval", { low: percent(share.low), high: percent(share.high), of: share.of })}
         {wanted !== null && ` · ${t("calibration.wanted", { percent: wanted })}`}
       </td>
+      <td data-testid="sharpness">{sharpness}</td>
     </tr>
   );
 }
@@ -94,19 +102,47 @@ function Choose({ label, value, all, onChoose }: { label: MessageKey; value: str
 
 function Found({ found }: { found: Calibration }) {
   const units = settings.value.units;
+  const { sharpness_deg: sigma, sharpness_m: stated, forecast_90_s: forecast, forecast_took_s: took } = found;
   return (
     <>
       <p data-testid="calibration-of">
         {t("calibration.of", { missions: found.missions, bearings: found.bearings.length, lost: found.not_found })}
-        {found.sharpness_deg !== null && ` ${t("calibration.sharpness", { sigma: formatNumber(found.sharpness_deg, 1) })}`}
         {found.error_ratio !== null && ` ${t("calibration.ratio", { ratio: formatNumber(found.error_ratio, 2) })}`}
       </p>
       <table class="table reliabilities">
+        <thead>
+          <tr>
+            <td />
+            <th scope="col" colSpan={3}>
+              {t("calibration.held")}
+            </th>
+            <th scope="col">{t("calibration.sharpness")}</th>
+          </tr>
+        </thead>
         <tbody>
-          <Reliability label="calibration.one" share={found.within_1_sigma} wanted={68} />
+          <Reliability
+            label="calibration.one"
+            share={found.within_1_sigma}
+            wanted={68}
+            sharpness={sigma !== null ? `±${formatNumber(sigma, 1)}°` : null}
+          />
           <Reliability label="calibration.two" share={found.within_2_sigma} wanted={95} />
-          <Reliability label="calibration.c95" share={found.c95} wanted={95} />
-          <Reliability label="calibration.forecast" share={found.forecast_90} wanted={90} />
+          <Reliability
+            label="calibration.c95"
+            share={found.c95}
+            wanted={95}
+            sharpness={stated !== null ? `±${formatLength(stated, units)}` : null}
+          />
+          <Reliability
+            label="calibration.forecast"
+            share={found.forecast_90}
+            wanted={90}
+            sharpness={
+              forecast !== null && took !== null
+                ? t("calibration.forecastSharpness", { stated: formatDuration(forecast), took: formatDuration(took) })
+                : null
+            }
+          />
           <Reliability label="calibration.outliers" share={found.outliers} wanted={null} />
         </tbody>
       </table>

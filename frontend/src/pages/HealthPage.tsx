@@ -13,7 +13,7 @@ const DATABASES = { sqlite: "SQLite", postgresql: "PostgreSQL" } as const;
 
 function Part({ name, good, children }: { name: string; good: boolean; children: ComponentChildren }) {
   return (
-    <section class="card" data-testid="health-part" data-good={good}>
+    <section class="card health-part" data-testid="health-part" data-good={good}>
       <h2>{name}</h2>
       {children}
     </section>

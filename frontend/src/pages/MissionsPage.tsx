@@ -64,9 +64,14 @@ interface RowProperties {
   mission: MissionSummary;
   editing: boolean;
   onEdit: (id: string | null) => void;
+  onChanged: () => void;
 }
 
-function Row({ mission, editing, onEdit }: RowProperties) {
+function Row({ mission, editing, onEdit, onChanged }: RowProperties) {
+  const changed = () => {
+    onEdit(null);
+    onChanged();
+  };
   return (
     <tr data-testid="mission-row" data-mission={mission.mission_id} data-phase={mission.phase}>
       <td>
@@ -82,7 +87,12 @@ function Row({ mission, editing, onEdit }: RowProperties) {
           </span>
         ))}
         {mission.notes && <p class="muted notes">{mission.notes}</p>}
-        {editing && <LabelForm mission={mission} onDone={() => onEdit(null)} />}
+        {mission.gone_at_utc && (
+          <p class="muted" data-testid="gone-at">
+            {t("missions.goneAt", { date: mission.gone_at_utc.slice(0, 10) })}
+          </p>
+        )}
+        {editing && <LabelForm mission={mission} onDone={changed} />}
       </td>
       <td>
         <span class={`tag tone-${toneOfMission(mission.phase, mission.outcome)}`}>
@@ -183,8 +193,8 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
   );
 }
 
-/** The list of missions with this part in their name, kept current; `more` reads the page that follows. */
-function useLibrary(filter: Filter) {
+/** The list of missions with this part in their name, kept current, at once after each of `changes`; `more` reads the page that follows. */
+function useLibrary(filter: Filter, changes: number) {
   const asked = asQuery(filter);
   const named = JSON.stringify(asked);
   const [library, setLibrary] = useState<Library | null>(null);
@@ -207,7 +217,7 @@ function useLibrary(filter: Filter) {
       clearTimeout(first);
       clearInterval(timer);
     };
-  }, [named]);
+  }, [named, changes]);
   const more = (from: Library) =>
     api.missions(JSON.parse(from.named) as Record<string, string>, from.next).then(
       (page) => setLibrary((now) => (now?.named === from.named ? withNextPage(now, page) : now)),
@@ -269,7 +279,8 @@ export function MissionsPage() {
   const [filter, setFilter] = useState<Filter>(ANY);
   const [editing, setEditing] = useState<string | null>(null);
   const [refused, setRefused] = useState<Problem | null>(null);
-  const { library, problem, more } = useLibrary(filter);
+  const [changes, setChanges] = useState(0);
+  const { library, problem, more } = useLibrary(filter, changes);
   const shown = library?.missions;
   const isEmpty = shown?.length === 0 && filter === ANY;
   const bringing = (
@@ -338,7 +349,13 @@ export function MissionsPage() {
             </thead>
             <tbody>
               {shown.map((mission) => (
-                <Row mission={mission} editing={editing === mission.mission_id} onEdit={setEditing} key={mission.mission_id} />
+                <Row
+                  mission={mission}
+                  editing={editing === mission.mission_id}
+                  onEdit={setEditing}
+                  onChanged={() => setChanges((before) => before + 1)}
+                  key={mission.mission_id}
+                />
               ))}
             </tbody>
           </table>

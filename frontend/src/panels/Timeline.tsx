@@ -224,91 +224,95 @@ export function Timeline() {
   const [pace, setPace] = useState(10);
   return (
     <section class="timeline" aria-label={t("timeline.label")} data-testid="timeline" data-tour="6">
-      <div class="timeline-controls">
-        <button
-          type="button"
-          class={reviewing ? "primary" : "is-live"}
-          data-testid="go-live"
-          data-live={!reviewing}
-          onClick={() => {
-            play(null);
-            look(null);
-          }}
-        >
-          {t(liveLabel(reviewing))}
-        </button>
-        <button
-          type="button"
-          class="icon"
-          aria-label={t("timeline.previous")}
-          data-testid="step-back"
-          disabled={all.length === 0}
-          onClick={() => stepEvent(-1)}
-        >
-          <Icon name="back" />
-        </button>
-        <button
-          type="button"
-          class="icon"
-          aria-label={t("timeline.next")}
-          data-testid="step-on"
-          disabled={!reviewing}
-          onClick={() => stepEvent(1)}
-        >
-          <Icon name="on" />
-        </button>
-        <button
-          type="button"
-          data-testid="play"
-          disabled={all.length === 0}
-          onClick={() => {
-            if (speed === null && cursor.peek() === null && all[0]) look(all[0].seq);
-            play(speed === null ? pace : null);
-          }}
-        >
-          <Icon name={speed === null ? "play" : "pause"} />
-          <span class="play-word">{t(speed === null ? "timeline.play" : "timeline.pause")}</span>
-        </button>
-        <select
-          data-testid="pace"
-          aria-label={t("timeline.pace")}
-          value={pace}
-          onChange={(e) => {
-            const chosen = Number(e.currentTarget.value);
-            setPace(chosen);
-            if (speed !== null) play(chosen);
-          }}
-        >
-          {PACES.map((one) => (
-            <option value={one} key={one}>
-              {formatNumber(one, one < 1 ? 1 : 0)}×
-            </option>
-          ))}
-        </select>
-        <select
-          class="jump"
-          data-testid="jump"
-          aria-label={t("timeline.jump")}
-          value=""
-          disabled={all.length === 0}
-          onChange={(e) => {
-            jumpTo(e.currentTarget.value as EventTone);
-            e.currentTarget.value = "";
-          }}
-        >
-          <option value="">{t("timeline.jump")}</option>
-          {JUMPS.filter((tone) => all.some((e) => toneOf(e.event) === tone)).map((tone) => (
-            <option value={tone} key={tone}>
-              {t(`timeline.jump.${tone}`)}
-            </option>
-          ))}
-        </select>
-        <label class="check">
-          <input type="checkbox" checked={showAll.value} onChange={(e) => (showAll.value = e.currentTarget.checked)} />
-          {t("timeline.filter.all")}
-        </label>
-      </div>
       <Strip all={all} />
+      <div class="timeline-controls">
+        <div class="timeline-run">
+          <button
+            type="button"
+            class={reviewing ? "primary" : "is-live"}
+            data-testid="go-live"
+            data-live={!reviewing}
+            onClick={() => {
+              play(null);
+              look(null);
+            }}
+          >
+            {t(liveLabel(reviewing))}
+          </button>
+          <button
+            type="button"
+            class="icon"
+            aria-label={t("timeline.previous")}
+            data-testid="step-back"
+            disabled={all.length === 0}
+            onClick={() => stepEvent(-1)}
+          >
+            <Icon name="back" />
+          </button>
+          <button
+            type="button"
+            class="icon"
+            aria-label={t("timeline.next")}
+            data-testid="step-on"
+            disabled={!reviewing}
+            onClick={() => stepEvent(1)}
+          >
+            <Icon name="on" />
+          </button>
+          <button
+            type="button"
+            data-testid="play"
+            disabled={all.length === 0}
+            onClick={() => {
+              if (speed === null && cursor.peek() === null && all[0]) look(all[0].seq);
+              play(speed === null ? pace : null);
+            }}
+          >
+            <Icon name={speed === null ? "play" : "pause"} />
+            <span class="play-word">{t(speed === null ? "timeline.play" : "timeline.pause")}</span>
+          </button>
+        </div>
+        <div class="timeline-run">
+          <select
+            data-testid="pace"
+            aria-label={t("timeline.pace")}
+            value={pace}
+            onChange={(e) => {
+              const chosen = Number(e.currentTarget.value);
+              setPace(chosen);
+              if (speed !== null) play(chosen);
+            }}
+          >
+            {PACES.map((one) => (
+              <option value={one} key={one}>
+                {formatNumber(one, one < 1 ? 1 : 0)}×
+              </option>
+            ))}
+          </select>
+          <select
+            class="jump"
+            data-testid="jump"
+            aria-label={t("timeline.jump")}
+            value=""
+            disabled={all.length === 0}
+            onChange={(e) => {
+              jumpTo(e.currentTarget.value as EventTone);
+              e.currentTarget.value = "";
+            }}
+          >
+            <option value="">{t("timeline.jump")}</option>
+            {JUMPS.filter((tone) => all.some((e) => toneOf(e.event) === tone)).map((tone) => (
+              <option value={tone} key={tone}>
+                {t(`timeline.jump.${tone}`)}
+              </option>
+            ))}
+          </select>
+          <label class="check">
+            <input type="checkbox" checked={showAll.value} onChange={(e) => (showAll.value = e.currentTarget.checked)} />
+            {t("timeline.filter.all")}
+          </label>
+        </div>
+      </div>
       <Log all={all} />
     </section>
   );

@@ -2452,8 +2452,10 @@ export interface components {
         /**
          * @description Of all checked missions of a craft and antenna, or of all. within_1_sigma and within_2_sigma: of bearings, offset
          *     not taken off (68 and 95 % when sigma is right). c95: of fixes. error_ratio: root mean square of error over stated
-         *     error of the fixes. forecast_90: times that the 90 % figure held. sharpness_deg: mean stated sigma.
-         *     antennas: all there are, to choose from. suggested None: fewer than `needed` bearings.
+         *     error of the fixes. forecast_90: times that the 90 % figure held. Sharpness, all of them means of what was stated:
+         *     sharpness_deg, sigma of bearings; sharpness_m, expected error of fixes; forecast_90_s, the 90 % figure, and
+         *     forecast_took_s, what it took then. antennas: all there are, to choose from. suggested None: fewer than `needed`
+         *     bearings.
          */
         Calibration: {
             missions: number;
@@ -2467,6 +2469,9 @@ export interface components {
             error_ratio: number | null;
             forecast_90: components["schemas"]["ShareFact"];
             sharpness_deg: number | null;
+            sharpness_m: number | null;
+            forecast_90_s: number | null;
+            forecast_took_s: number | null;
             antennas: string[];
             crafts: string[];
             needed: number;
@@ -4635,6 +4640,7 @@ export interface components {
             tags: string[];
             notes: string;
             deleted_at_utc: string | null;
+            gone_at_utc: string | null;
             sketch: components["schemas"]["Sketch"];
             iq_bytes: number;
             spec: components["schemas"]["MissionSpec"];
@@ -4825,8 +4831,8 @@ export interface components {
         };
         /**
          * @description One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
-         *     `ended_at_utc`, `outcome`: None until it happened. `iq_bytes`: of the IQ that can be exported as SigMF, 0: none was
-         *     kept.
+         *     `ended_at_utc`, `outcome`: None until it happened. `gone_at_utc`: until when a deleted one can be restored. `iq_bytes`:
+         *     of the IQ that can be exported as SigMF, 0: none was kept.
          */
         MissionSummary: {
             mission_id: string;
@@ -4846,6 +4852,7 @@ export interface components {
             tags: string[];
             notes: string;
             deleted_at_utc: string | null;
+            gone_at_utc: string | null;
             sketch: components["schemas"]["Sketch"];
             iq_bytes: number;
         };

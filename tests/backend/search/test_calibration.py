@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
+from facts import belief, plan
 from ground import AREA, FRAME, bearing
 
 from backend.events import Event, MissionDrafted, MissionStarted, PlaceReached, Recorded, TruthNoted
@@ -63,6 +64,18 @@ def test_few_bearings_suggest_nothing_and_not_found_counts() -> None:
     found = calibrated({"a": few, "b": lost})
     assert (found.missions, found.not_found, len(found.bearings), found.suggested) == (2, 1, 1, None)
     assert calibrated({"a": few}, "another").missions == 0
+
+
+def test_a_forecast_is_told_with_how_often_it_held_and_how_long_it_was() -> None:
+    """Three plans, 3, 2 and 1 s before the emitter was localized, of which one said half a second; one plan came after,
+    and one belongs to a search that never localized."""
+    said = [plan().model_copy(update={"time_90_s": stated}) for stated in (90.0, 0.5, 30.0, 1000.0)]
+    facts = recorded(*said[:3], belief(3, localized=True), said[3], told())
+    found = calibrated({"m": facts, "n": recorded(said[3], told())})
+    assert (found.forecast_90.of, found.forecast_90.share) == (3, pytest.approx(2 / 3))
+    assert found.forecast_90_s == pytest.approx((90.0 + 0.5 + 30.0) / 3)
+    assert found.forecast_took_s == pytest.approx((3.0 + 2.0 + 1.0) / 3)
+    assert calibrated({}).forecast_90_s is None
 
 
 def test_flight_times_suggest_a_movement_model() -> None:

@@ -19,7 +19,7 @@ from backend.store.entries import EventRow, to_records
 from backend.store.upgrade import FIRST_FORM
 
 STORED = json.loads(gzip.decompress((REPOSITORY / "tests/golden/journals/demo-px4-open.json.gz").read_bytes()))
-TOLD = {1: "6c87144141db4173"}
+TOLD = {2: "8dbac0a7058ce78d"}
 """By reckoning, the digest of what the stored flight tells."""
 
 
@@ -64,3 +64,4 @@ def test_what_cannot_have_been_told_is_not_sound() -> None:
     assert sound(said)
     assert not any(sound(replace(said, errors=[one])) for one in odd)
     assert not sound(replace(said, fixes=[replace(said.fixes[0], error_m=math.nan)]))
+    assert not sound(replace(said, forecasts=[replace(said.forecasts[0], took_s=math.inf)]))

@@ -36,6 +36,9 @@ def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
         "50.1,7.2,10,3\n50.2,7.3,20\n",
         "bearing;longitude;latitude;sigma\n10;7.2;50.1;3\n20;7.3;50.2;\n",
         "# lat, lon, bearing_deg, sigma_deg\n50.1,7.2,10,3\n\n50.2,7.3,20\n",
+        "\ufefflat;lon;bearing_deg;sigma_deg\r\n50,1;7,2;10,0;3\r\n50,2;7,3;20;\r\n",
+        "50,1\t7,2\t10,0\t3\n50.2\t7.3\t20\n",
+        "bearing,lat,lon,sigma,note\n10,50.1,7.2,3,hill;1,5\n20,50.2,7.3,,a;b\n",
     ],
 )
 def test_plain_csv_with_and_without_header_and_sigma(tmp_path: Path, text: str) -> None:
