@@ -22,7 +22,7 @@ from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.bent_lobes import BentLobes
 from hardware.direction_finding.circle import Besides, SweepLikelihood, sweep_likelihood
-from hardware.direction_finding.many_echoes import ManyEchoes, echo_field, many_echoes
+from hardware.direction_finding.many_echoes import SPREAD_REACH_DEG, ManyEchoes, echo_field, many_echoes
 from hardware.direction_finding.other_antenna import (
     KNOWN_REACH_DEG,
     OtherAntenna,
@@ -72,8 +72,12 @@ OTHER_ODDS = 3.0
 """Of another antenna to the pattern's before the sweep is seen, when nobody checked the pattern on the vehicle."""
 OTHER_ODDS_BORROWED = 8.0
 OTHER_ODDS_CHECKED = 0.05
-ECHO_ODDS = 0.3
-"""Of many echoes to one or none, before the sweep is seen."""
+ECHO_ODDS = 2.0
+"""Of many echoes to the likeliest of one wave, one echo and a view from above, before the sweep is seen."""
+JOINED_DEG = 45.0
+"""Bearings of different explanations that are no further apart mean the same direction, and are averaged."""
+AMBIGUOUS = 0.25
+"""Probability beyond 60 degrees of a bearing that is no outlier's any more: sigma is the whole circle's spread then."""
 EMITTER_AWAY_M = 100.0
 """How far away an emitter is taken to be when a place that is not sure is made an angle: the planner's places lie 50 to
 150 m from where it looks."""
@@ -248,23 +252,23 @@ def remarks_on(pattern: AntennaPattern, other: float) -> tuple[SweepRemark, ...]
 
 
 def _of_all(refined: Refined, explained: _Explained) -> tuple[float, float]:
-    """(bearing by the likeliest explanation, spread of all about it)."""
+    """(mean bearing of the explanations that agree with the likeliest, spread of all about it)."""
     other, echoes = explained.other, explained.echoes
     if other is None or echoes is None:
         return refined.bearing_deg, refined.sigma_deg
-    share = (1.0 - explained.of_other - explained.of_echoes, explained.of_other, explained.of_echoes)
-    bearings = (refined.bearing_deg, other.bearing_deg, echoes.bearing_deg)
-    bearing = bearings[max(range(3), key=lambda i: share[i])]
-
-    def about(mean_deg: float, sigma_deg: float) -> float:
-        return sigma_deg**2 + ((mean_deg - bearing + 180.0) % 360.0 - 180.0) ** 2
-
-    squares = (
-        about(refined.bearing_deg, refined.sigma_deg),
-        about(other.bearing_deg, other.sigma_deg),
-        echoes.spread_deg(bearing) ** 2,
-    )
-    return bearing, math.sqrt(sum(p * square for p, square in zip(share, squares, strict=True)))
+    share = np.array([1.0 - explained.of_other - explained.of_echoes, explained.of_other, explained.of_echoes])
+    bearings = np.array([refined.bearing_deg, other.bearing_deg, echoes.bearing_deg])
+    lead = float(bearings[int(np.argmax(share))])
+    apart = (bearings - lead + 180.0) % 360.0 - 180.0
+    joined = share * (np.abs(apart) <= JOINED_DEG)
+    bearing = (lead + float(joined @ apart) / float(joined.sum())) % 360.0
+    apart = (bearings[:2] - bearing + 180.0) % 360.0 - 180.0
+    beyond = np.abs(apart) > SPREAD_REACH_DEG
+    whole = float(share[:2] @ beyond) + float(share[2]) * echoes.beyond(bearing) > AMBIGUOUS
+    counted = np.where(beyond & (not whole), 0.0, apart)
+    squares = np.array([refined.sigma_deg, other.sigma_deg]) ** 2 + counted**2
+    spread = echoes.spread_deg(bearing, 180.0 if whole else SPREAD_REACH_DEG)
+    return bearing, math.sqrt(float(share[:2] @ squares) + float(share[2]) * spread**2)
 
 
 def _widened(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:

@@ -67,11 +67,20 @@ class ManyEchoes:
     at_deg: NDArray[np.float64]
     log_density: NDArray[np.float64]
 
-    def spread_deg(self, bearing_deg: float) -> float:
-        """Standard deviation about any bearing, of the mass within 60 degrees of it."""
-        off = (self.at_deg[:-1] - bearing_deg + 180.0) % 360.0 - 180.0
-        mass = np.exp(self.log_density[:-1] - self.log_density.max()) * (np.abs(off) <= SPREAD_REACH_DEG)
+    def spread_deg(self, bearing_deg: float, reach_deg: float = SPREAD_REACH_DEG) -> float:
+        """Standard deviation about any bearing, of the mass within reach_deg of it."""
+        off, mass = self._about(bearing_deg)
+        mass = mass * (np.abs(off) <= reach_deg)
         return math.hypot(math.sqrt(float(mass @ off**2) / max(float(mass.sum()), 1e-12)), STEP_DEG / math.sqrt(12.0))
+
+    def beyond(self, bearing_deg: float) -> float:
+        """Probability of directions further than 60 degrees from any bearing."""
+        off, mass = self._about(bearing_deg)
+        return float(mass[np.abs(off) > SPREAD_REACH_DEG].sum())
+
+    def _about(self, bearing_deg: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        mass = np.exp(self.log_density[:-1] - self.log_density.max())
+        return (self.at_deg[:-1] - bearing_deg + 180.0) % 360.0 - 180.0, mass / mass.sum()
 
 
 def many_echoes(

@@ -71,7 +71,7 @@ def test_its_bearings_among_echoes_are_better_than_the_principal_axis(slices: in
         found = weighed(parts)
         own.append(abs(off_deg(found.bearing_deg, truth)))
         axis.append(abs(off_deg(principal_axis_deg(sweep), truth)))
-        held.append(own[-1] < 2.0 * found.spread_deg(found.bearing_deg))
+        held.append(own[-1] < 2.0 * found.spread_deg(found.bearing_deg, 180.0))
     assert np.median(own) < 0.9 * np.median(axis)
     assert np.mean(held) > 0.85
 
