@@ -17,8 +17,6 @@ UNCHECKED_SQUINT_DEG = 6.0
 """An antenna that nobody checked on its vehicle may point 10 degrees beside where it should: within two of these."""
 BORROWED_SQUINT_DEG = 9.0
 """The same when not even the antenna is the one that was measured."""
-UNEVEN_FLANKS = 0.05
-"""What flanks of uneven width move a bearing by, standard deviation over the 3 dB beam width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +47,24 @@ class AntennaPattern:
         return 0.5 * float(np.sum(gain > gain.max() - 3.0))
 
     @property
+    def lobe_deg(self) -> float:
+        """Middle of everything within 3 dB of the maximum, degrees clockwise from the antenna's front."""
+        angle = np.arange(0.0, 360.0, 0.5)
+        gain = self.gain_at(angle)
+        top = np.exp(1j * np.radians(angle[gain > gain.max() - 3.0]))
+        return math.degrees(float(np.angle(top.sum())))
+
+    @property
+    def checked(self) -> bool:
+        """Whether somebody measured, with the antenna on its vehicle, where it points."""
+        return self.pointing_sigma_deg is not None and not self.borrowed
+
+    @property
     def mismatch_sigma_deg(self) -> float:
         """What bearings found with this pattern may be off by together, in degrees: no single sweep can show it."""
         if self.pointing_sigma_deg is not None and not self.borrowed:
             return self.pointing_sigma_deg
-        squint = BORROWED_SQUINT_DEG if self.borrowed else UNCHECKED_SQUINT_DEG
-        return math.hypot(squint, UNEVEN_FLANKS * self.beam_deg)
+        return BORROWED_SQUINT_DEG if self.borrowed else UNCHECKED_SQUINT_DEG
 
     def gain_at(self, relative_bearing_deg: NDArray[np.float64]) -> NDArray[np.float64]:
         """Gain in dB at any relative bearings (degrees, any shape)."""

@@ -1,9 +1,10 @@
 """A sweep's likelihood over direction: what it says of every bearing, where a main peak and a sigma say it of one.
 
-    p(m | b) = (1 - o) p_pattern(b) + o p_other(b)
+    p(m | b) = (1 - o - e) p_pattern(b) + o p_other(b) + e p_echoes(b)
 
 with p_pattern the density over all shapes that the pattern's antenna may show (refine.py), o the probability that the
-sweep was heard with another antenna (other_antenna.py) and p_other the density with that. Several peaks, a skew and
+sweep was heard with another antenna (other_antenna.py), e that it was heard among many echoes (many_echoes.py), and
+p_other, p_echoes the densities with these. Several peaks, a skew and
 flat stretches are kept. What all bearings of a flight share (compass, mounting) is not in it: whoever uses it adds it.
 """
 
@@ -12,12 +13,12 @@ from __future__ import annotations
 import base64
 import binascii
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hardware.direction_finding.other_antenna import OtherAntenna
 from hardware.direction_finding.refine import CircleDensity
 
 DIRECTIONS = 360
@@ -79,21 +80,34 @@ class SweepLikelihood:
         return cls(-_STEP * np.frombuffer(raw, dtype=np.uint8).astype(np.float64))
 
 
-def sweep_likelihood(circle: CircleDensity, other: OtherAntenna | None, other_probability: float) -> SweepLikelihood:
-    """The mixture above. other_probability: o, of no matter where `other` is None."""
+@dataclass(frozen=True, slots=True)
+class Besides:
+    """Another explanation of a sweep: its probability, and at (j,) ascending degrees its log density, unnormalized."""
+
+    probability: float
+    at_deg: NDArray[np.float64]
+    log_density: NDArray[np.float64]
+
+
+def sweep_likelihood(circle: CircleDensity, besides: Sequence[Besides] = ()) -> SweepLikelihood:
+    """The mixture above: the pattern's antenna has what probability the others leave."""
     known = _each_degree(circle)
-    known = known - _log_total(known)
-    if other is None:
-        return SweepLikelihood.of(known)
-    at = other.bearing_deg + other.off_deg
-    beyond = float(np.min(other.log_density)) + FLOOR
-    placed = np.full(DIRECTIONS, beyond)
+    left = 1.0 - sum(other.probability for other in besides)
+    parts = [np.log(min(max(left, 1e-9), 1.0)) + known - _log_total(known)]
+    for other in besides:
+        placed = _placed(other)
+        parts.append(np.log(max(other.probability, 1e-9)) + placed - _log_total(placed))
+    return SweepLikelihood.of(np.logaddexp.reduce(parts))
+
+
+def _placed(other: Besides) -> NDArray[np.float64]:
+    """(360,) far below the rest where it says nothing."""
+    at = other.at_deg
+    placed = np.full(DIRECTIONS, float(np.min(other.log_density)) + FLOOR)
     turned: NDArray[np.float64] = (np.arange(DIRECTIONS) - at[0]) % 360.0 + at[0]
     inside = turned <= at[-1]
     placed[inside] = np.interp(turned[inside], at, other.log_density)
-    placed = placed - _log_total(placed)
-    o = min(max(other_probability, 1e-9), 1.0 - 1e-9)
-    return SweepLikelihood.of(np.logaddexp(np.log1p(-o) + known, np.log(o) + placed))
+    return placed
 
 
 def _each_degree(circle: CircleDensity) -> NDArray[np.float64]:

@@ -2,7 +2,8 @@
 
 Steps: bin (sweep.py) -> reject what no method can use -> sparse non-negative reconstruction on linear power (sparse.py)
 -> components -> posterior around the strongest, in decibels, echoes and look-down considered (refine.py)
--> another antenna than the pattern's considered (other_antenna.py) -> likelihood all round (circle.py), quality.
+-> another antenna than the pattern's, and many echoes, considered (other_antenna.py, many_echoes.py)
+-> likelihood all round (circle.py), quality.
 
 Units of the sparse problem: linear power above the noise floor. Both the columns of A and m are scaled to unit norm
 over a full turn, so lambda = 0.3 has one meaning whatever the signal level, pattern or number of empty bins: a
@@ -19,8 +20,16 @@ from numpy.typing import NDArray
 
 from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.circle import SweepLikelihood, sweep_likelihood
-from hardware.direction_finding.other_antenna import OtherAntenna, other_antenna
+from hardware.direction_finding.bent_lobes import BentLobes
+from hardware.direction_finding.circle import Besides, SweepLikelihood, sweep_likelihood
+from hardware.direction_finding.many_echoes import SPREAD_REACH_DEG, ManyEchoes, echo_field, many_echoes
+from hardware.direction_finding.other_antenna import (
+    KNOWN_REACH_DEG,
+    OtherAntenna,
+    doubtful,
+    known_antenna,
+    other_antenna,
+)
 from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
 from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
@@ -63,6 +72,12 @@ OTHER_ODDS = 3.0
 """Of another antenna to the pattern's before the sweep is seen, when nobody checked the pattern on the vehicle."""
 OTHER_ODDS_BORROWED = 8.0
 OTHER_ODDS_CHECKED = 0.05
+ECHO_ODDS = 2.0
+"""Of many echoes to the likeliest of one wave, one echo and a view from above, before the sweep is seen."""
+JOINED_DEG = 45.0
+"""Bearings of different explanations that are no further apart mean the same direction, and are averaged."""
+AMBIGUOUS = 0.25
+"""Probability beyond 60 degrees of a bearing that is no outlier's any more: sigma is the whole circle's spread then."""
 EMITTER_AWAY_M = 100.0
 """How far away an emitter is taken to be when a place that is not sure is made an angle: the planner's places lie 50 to
 150 m from where it looks."""
@@ -74,6 +89,36 @@ class Component:
 
     bearing_deg: float
     weight: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Prepared:
+    """What is made of a pattern once."""
+
+    bank: PatternBank
+    curve: PatternCurve
+    alternatives: Alternatives
+    echoes: BentLobes
+
+
+@dataclass(frozen=True, slots=True)
+class _Explained:
+    """What else may explain a sweep, and how probable each is; the pattern's antenna has the rest."""
+
+    other: OtherAntenna | None = None
+    of_other: float = 0.0
+    echoes: ManyEchoes | None = None
+    of_echoes: float = 0.0
+
+    def besides(self) -> tuple[Besides, ...]:
+        """Their densities."""
+        other, echoes = self.other, self.echoes
+        if other is None or echoes is None:
+            return ()
+        return (
+            Besides(self.of_other, other.bearing_deg + other.off_deg, other.log_density),
+            Besides(self.of_echoes, echoes.at_deg, echoes.log_density),
+        )
 
 
 @dataclass(slots=True)
@@ -88,9 +133,7 @@ class SparseDirectionFinder:
     minimum_quality: float = MINIMUM_QUALITY
     penalty: float = PENALTY
     heading_sigma_deg: float = 0.0
-    _prepared: dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]] = field(
-        default_factory=dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]], repr=False
-    )
+    _prepared: dict[bytes, _Prepared] = field(default_factory=dict[bytes, _Prepared], repr=False)
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         """Bearing, sigma and quality of one sweep; one that cannot be used comes back not accepted, with the reason."""
@@ -98,27 +141,30 @@ class SparseDirectionFinder:
         refusal = unusable(sweep, binned)
         if refusal is not None:
             return refused(binned, refusal)
-        bank, curve, alternatives = self._prepare(pattern)
+        prepared = self._prepare(pattern)
+        curve, alternatives = prepared.curve, prepared.alternatives
         noise_db = sweep.noise_floor_db
         power = linear_power(binned, noise_db)
         if noise_db is not None and np.nanmax(binned.power_db) < noise_db + HEARD_DB:
             return refused(binned, NothingAboveNoise(HEARD_DB))
-        solution = solve_sparse(bank, power, self.penalty, binned.filled)
+        solution = solve_sparse(prepared.bank, power, self.penalty, binned.filled)
         parts = components(solution.r, curve.beam_deg / 2.0)  # closer ones no antenna resolves
         if not parts:
             return refused(binned, NoDirection())
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
         if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
             return refused(binned, NothingAboveNoise(HEARD_DB))
-        other = other_antenna(alternatives, binned, refined.bearing_deg, refined.peak_db, refined.fitted_db, noise_db)
-        return self._reading(pattern, curve, binned, parts, refined, other, noise_db, sweep.drift_m)
+        explained = _explained(prepared, pattern, binned, refined, noise_db)
+        return self._reading(pattern, curve, binned, parts, refined, explained, noise_db, sweep.drift_m)
 
-    def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve, Alternatives]:
-        key = pattern.relative_bearing_deg.tobytes() + pattern.gain_db.tobytes()
+    def _prepare(self, pattern: AntennaPattern) -> _Prepared:
+        key = pattern.relative_bearing_deg.tobytes() + pattern.gain_db.tobytes() + bytes([pattern.checked])
         if key not in self._prepared:
             if len(self._prepared) >= 16:
                 self._prepared.clear()
-            self._prepared[key] = (PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern))
+            self._prepared[key] = _Prepared(
+                PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern), echo_field(pattern)
+            )
         return self._prepared[key]
 
     def _reading(
@@ -128,14 +174,13 @@ class SparseDirectionFinder:
         binned: BinnedSweep,
         parts: list[Component],
         refined: Refined,
-        other: OtherAntenna | None,
+        explained: _Explained,
         noise_db: float | None,
         drift_m: float,
     ) -> BearingReading:
         place_sigma_deg = math.degrees(math.atan2(drift_m, EMITTER_AWAY_M))
-        probability = 0.0 if other is None else other_probability(other, pattern)
-        bearing, own_sigma = _of_both(refined, other, probability)
-        likelihood = sweep_likelihood(refined.circle, other, probability)
+        bearing, own_sigma = _of_all(refined, explained)
+        likelihood = sweep_likelihood(refined.circle, explained.besides())
         unheard = unheard_sigma_deg(binned.largest_gap_deg, curve.beam_deg)
         beyond = (bearing - binned.gap_start_deg) % 360.0
         in_gap = binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg
@@ -168,7 +213,7 @@ class SparseDirectionFinder:
             binned_db=binned.power_db,
             fitted_db=refined.fitted_db,
             snr_db=None if noise_db is None else refined.peak_db - noise_db,
-            remarks=remarks_on(pattern, probability),
+            remarks=remarks_on(pattern, explained.of_other),
             likelihood=_widened(likelihood, math.hypot(place_sigma_deg, unheard)).packed(),
         )
 
@@ -181,11 +226,23 @@ def unheard_sigma_deg(gap_deg: float, beam_deg: float) -> float:
     return UNHEARD_BEAMS * beam_deg * math.sqrt(gap_deg / 360.0) if gap_deg > beam_deg / 2.0 else 0.0
 
 
-def other_probability(other: OtherAntenna, pattern: AntennaPattern) -> float:
-    """Posterior of another antenna: Bayes' rule with the odds that the pattern's origin leaves."""
-    checked = OTHER_ODDS if pattern.pointing_sigma_deg is None else OTHER_ODDS_CHECKED
-    prior = math.log(OTHER_ODDS_BORROWED if pattern.borrowed else checked)
-    return 1.0 / (1.0 + math.exp(-min(max(other.log_odds + prior, -50.0), 50.0)))
+def _explained(
+    prepared: _Prepared, pattern: AntennaPattern, binned: BinnedSweep, refined: Refined, noise_db: float | None
+) -> _Explained:
+    """Posterior of another antenna and of many echoes: Bayes' rule with the odds that the pattern's origin leaves."""
+    slices = doubtful(binned, refined.fitted_db)
+    if slices is None:
+        return _Explained()
+    level_db = refined.peak_db
+    known = known_antenna(prepared.alternatives, slices, refined.bearing_deg, level_db, noise_db)
+    other = other_antenna(slices, level_db, noise_db, known)
+    echoes = many_echoes(prepared.echoes, slices, level_db, noise_db, known, KNOWN_REACH_DEG)
+    unchecked = OTHER_ODDS_BORROWED if pattern.borrowed else OTHER_ODDS
+    odds = OTHER_ODDS_CHECKED if pattern.checked else unchecked
+    log = np.array([0.0, other.log_odds + math.log(odds), echoes.log_odds + math.log(ECHO_ODDS)])
+    probability = np.exp(log - log.max())
+    probability /= probability.sum()
+    return _Explained(other, float(probability[1]), echoes, float(probability[2]))
 
 
 def remarks_on(pattern: AntennaPattern, other: float) -> tuple[SweepRemark, ...]:
@@ -194,16 +251,24 @@ def remarks_on(pattern: AntennaPattern, other: float) -> tuple[SweepRemark, ...]
     return (*borrowed, *((LikelyOtherAntenna(pattern.name, other),) if other > 0.5 else ()))
 
 
-def _of_both(refined: Refined, other: OtherAntenna | None, probability: float) -> tuple[float, float]:
-    """(bearing of the likelier antenna, spread of both about it)."""
-    if other is None:
+def _of_all(refined: Refined, explained: _Explained) -> tuple[float, float]:
+    """(mean bearing of the explanations that agree with the likeliest, spread of all about it)."""
+    other, echoes = explained.other, explained.echoes
+    if other is None or echoes is None:
         return refined.bearing_deg, refined.sigma_deg
-    apart = (other.bearing_deg - refined.bearing_deg + 180.0) % 360.0 - 180.0
-    chosen, to_known, to_other = (
-        (other.bearing_deg, apart, 0.0) if probability > 0.5 else (refined.bearing_deg, 0.0, apart)
-    )
-    known, another = refined.sigma_deg**2 + to_known**2, other.sigma_deg**2 + to_other**2
-    return chosen, math.sqrt((1.0 - probability) * known + probability * another)
+    share = np.array([1.0 - explained.of_other - explained.of_echoes, explained.of_other, explained.of_echoes])
+    bearings = np.array([refined.bearing_deg, other.bearing_deg, echoes.bearing_deg])
+    lead = float(bearings[int(np.argmax(share))])
+    apart = (bearings - lead + 180.0) % 360.0 - 180.0
+    joined = share * (np.abs(apart) <= JOINED_DEG)
+    bearing = (lead + float(joined @ apart) / float(joined.sum())) % 360.0
+    apart = (bearings[:2] - bearing + 180.0) % 360.0 - 180.0
+    beyond = np.abs(apart) > SPREAD_REACH_DEG
+    whole = float(share[:2] @ beyond) + float(share[2]) * echoes.beyond(bearing) > AMBIGUOUS
+    counted = np.where(beyond & (not whole), 0.0, apart)
+    squares = np.array([refined.sigma_deg, other.sigma_deg]) ** 2 + counted**2
+    spread = echoes.spread_deg(bearing, 180.0 if whole else SPREAD_REACH_DEG)
+    return bearing, math.sqrt(float(share[:2] @ squares) + float(share[2]) * spread**2)
 
 
 def _widened(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:

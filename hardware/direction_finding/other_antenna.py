@@ -26,9 +26,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.alternatives import Alternatives
+from hardware.direction_finding.bent_lobes import BentLobes, log_evidence, waves_of
+from hardware.direction_finding.shape_fit import BearingGrid, Templates, box
+from hardware.direction_finding.slices import (
+    LOG_NOISE_PRIOR,
+    NOISE_DB,
+    PER_SLICE,
+    Slices,
+    log_sum,
+    slices_of,
+)
 from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep
 
-SLICES = 36
 FEWEST_SLICES = 8
 WIDTHS_DEG = (50.0, 70.0, 95.0, 125.0)
 DEPTH_DB = 14.0
@@ -41,14 +50,18 @@ KNOWN_REACH_DEG = 40.0
 AXIS_WITHIN_DEG = 10.0
 FITS_DB = 0.8
 """A sweep that some shape of the pattern fits so well needs no other antenna."""
-_NOISE_DB = np.array([0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
-_NOISE_SPREAD = 0.5
-"""Of the noise's natural logarithm about 1 dB."""
-_NOISE_WEIGHTS = np.exp(-0.5 * (np.log(_NOISE_DB) / _NOISE_SPREAD) ** 2)
-_LOG_NOISE_PRIOR = np.log(_NOISE_WEIGHTS / _NOISE_WEIGHTS.sum())
-_PER_SLICE = BINS // SLICES
 _OFF_DEG = (BIN_DEG * np.arange(BINS) + 180.0) % 360.0 - 180.0
 _LOBES_DB = DEPTH_DB * (1.0 - np.exp(-12.0 * (_OFF_DEG / np.array(WIDTHS_DEG)[:, None]) ** 2 / DEPTH_DB))
+# exp(-(d / a)^2 / 2) has the Fourier coefficients exp(-(n a)^2 / 2)
+_WAVES = waves_of(np.exp(-0.5 * (np.arange(BINS // 2) * math.radians(ALIKE_DEG)) ** 2))
+
+
+def _bent(depth_db: NDArray[np.float64]) -> BentLobes:
+    """depth_db: (v, 180) how far below the maximum each lobe is, every 2 degrees."""
+    return BentLobes(-depth_db, LOBE_DB + (BESIDE_DB - LOBE_DB) * np.minimum(depth_db / DEPTH_DB, 1.0), _WAVES)
+
+
+_OTHERS = _bent(_LOBES_DB)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,46 +78,44 @@ class OtherAntenna:
     log_density: NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class _Slices:
-    """heading_deg, power_db: (n,) means. smooth: the slices are 10 degrees of several bins each."""
+def doubtful(binned: BinnedSweep, fitted_db: NDArray[np.float64]) -> Slices | None:
+    """The sweep's slices, where it is worth asking whether it shows something else than the pattern's likeliest shape.
 
-    heading_deg: NDArray[np.float64]
-    power_db: NDArray[np.float64]
-    smooth: bool
-
-
-def other_antenna(
-    alternatives: Alternatives,
-    binned: BinnedSweep,
-    near_deg: float,
-    level_db: float,
-    fitted_db: NDArray[np.float64],
-    noise_db: float | None,
-) -> OtherAntenna | None:
-    """None where the pattern fits too well, or too little was heard, for the question to arise.
-
-    near_deg: the bearing found with the pattern. level_db: the wave's power there at the antenna's maximum.
-    fitted_db: (180,) the likeliest shape of the pattern.
+    fitted_db: (180,) that shape. None: it fits too well, or too little was heard.
     """
-    slices = _slices(binned, binned.power_db)
+    slices = slices_of(binned, binned.power_db)
     if slices.heading_deg.size < FEWEST_SLICES:
         return None
-    residual_db = slices.power_db - _slices(binned, fitted_db).power_db
-    if float(np.sqrt(np.mean(residual_db**2))) < FITS_DB:
-        return None
+    residual_db = slices.power_db - slices_of(binned, fitted_db).power_db
+    return None if float(np.sqrt(np.mean(residual_db**2))) < FITS_DB else slices
+
+
+def known_antenna(
+    alternatives: Alternatives, slices: Slices, near_deg: float, level_db: float, noise_db: float | None
+) -> float:
+    """Log evidence of the pattern's antenna, whatever its shape, a little disturbed or not.
+
+    near_deg: the bearing found with the pattern. level_db: the wave's power there at the antenna's maximum.
+    """
     reach: NDArray[np.float64] = np.arange(-KNOWN_REACH_DEG, KNOWN_REACH_DEG + 0.1, STEP_DEG)
-    own_db = -10.0 * np.log10(_box(alternatives.power[:1]) if slices.smooth else alternatives.power[:1])[0]
-    disturbed = _with_deviation(slices, near_deg + reach, own_db[None, :], level_db, noise_db)
-    known = np.logaddexp(
-        _known(alternatives, slices, near_deg, level_db, noise_db),
-        _log_sum(disturbed.ravel()) - math.log(disturbed.size),
+    own = alternatives.power[:1]
+    own_db = -10.0 * np.log10(box(own, PER_SLICE) if slices.smooth else own)
+    disturbed = log_evidence(_bent(own_db), slices, near_deg + reach, level_db, noise_db)
+    return float(
+        np.logaddexp(
+            _known(alternatives, slices, near_deg, level_db, noise_db),
+            log_sum(disturbed.ravel()) - math.log(disturbed.size),
+        )
     )
+
+
+def other_antenna(slices: Slices, level_db: float, noise_db: float | None, known: float) -> OtherAntenna:
+    """known: log evidence of the pattern's antenna. level_db: as there."""
     strongest = float(slices.heading_deg[int(np.argmax(slices.power_db))])
     bearing = strongest + np.arange(-REACH_DEG, REACH_DEG + 0.1, STEP_DEG)
-    score = _with_deviation(slices, bearing, _LOBES_DB, level_db, noise_db)
-    evidence = _log_sum(score.ravel()) - math.log(score.size)
-    log_density = _log_sum(score, axis=0)
+    score = log_evidence(_OTHERS, slices, bearing, level_db, noise_db)
+    evidence = log_sum(score.ravel()) - math.log(score.size)
+    log_density = log_sum(score, axis=0)
     mass = np.exp(log_density - log_density.max())
     mass /= mass.sum()
     mean = float(mass @ bearing)
@@ -115,7 +126,7 @@ def other_antenna(
     return OtherAntenna(float(evidence - known), mean % 360.0, sigma, bearing - mean, log_density)
 
 
-def _principal_axis_deg(slices: _Slices, noise_db: float | None) -> float:
+def _principal_axis_deg(slices: Slices, noise_db: float | None) -> float:
     """First principal component of the linear powers as vectors, not centred, towards their sum."""
     top_db = float(slices.power_db.max())
     noise = 0.0 if noise_db is None else 10.0 ** ((noise_db - top_db) / 10.0)
@@ -127,88 +138,23 @@ def _principal_axis_deg(slices: _Slices, noise_db: float | None) -> float:
     return math.degrees(math.atan2(east, north)) % 360.0
 
 
-def _slices(binned: BinnedSweep, bin_db: NDArray[np.float64]) -> _Slices:
-    filled = binned.filled
-    if int(filled.sum()) <= SLICES:
-        return _Slices(binned.heading_deg[filled], bin_db[filled], smooth=False)
-    owner = np.arange(BINS)[filled] // _PER_SLICE
-    count = np.bincount(owner, minlength=SLICES)
-    kept = count > 0
-    heading = np.bincount(owner, binned.heading_deg[filled], SLICES)[kept] / count[kept]
-    return _Slices(heading, np.bincount(owner, bin_db[filled], SLICES)[kept] / count[kept], smooth=True)
-
-
 def _known(
-    alternatives: Alternatives, slices: _Slices, near_deg: float, level_db: float, noise_db: float | None
+    alternatives: Alternatives, slices: Slices, near_deg: float, level_db: float, noise_db: float | None
 ) -> float:
     """Log evidence of the pattern's likeliest kind of shape."""
-    power = alternatives.power * 10.0 ** (level_db / 10.0)
-    total = power if noise_db is None else power + 10.0 ** (noise_db / 10.0)
-    db, share = 10.0 * np.log10(total), power / total
+    templates = Templates(alternatives, level_db, noise_db)
     if slices.smooth:
-        db, share = _box(db), _box(share)
+        templates = templates.smoothed(PER_SLICE)
     bearing: NDArray[np.float64] = near_deg + BIN_DEG * np.arange(
         -KNOWN_REACH_DEG // BIN_DEG, KNOWN_REACH_DEG // BIN_DEG + 1
     )
-    count = slices.heading_deg.size
-    squares = np.empty((db.shape[0], bearing.size))
-    norm = np.empty_like(squares)
-    for j, b in enumerate(bearing):
-        at = ((b - slices.heading_deg) % 360.0) / BIN_DEG
-        low = np.floor(at).astype(np.int64) % BINS
-        part = at - np.floor(at)
-        high = (low + 1) % BINS
-        residual = slices.power_db - (db[:, low] * (1.0 - part) + db[:, high] * part)
-        by = share[:, low] * (1.0 - part) + share[:, high] * part
-        norm[:, j] = np.sum(by**2, axis=1)
-        # the level profiled out: |r|^2 - (s' r)^2 / |s|^2
-        squares[:, j] = np.sum(residual**2, axis=1) - np.sum(by * residual, axis=1) ** 2 / norm[:, j]
-    log_likelihood = _log_sum(
-        -squares[..., None] / (2.0 * _NOISE_DB**2) - (count - 1) * np.log(_NOISE_DB) + _LOG_NOISE_PRIOR, axis=-1
+    grid = BearingGrid(bearing, slices.heading_deg, slices.power_db)
+    even, count = np.ones(grid.size), grid.size
+    squares, norm = grid.cost(templates, even), grid.norm(templates, even)
+    log_likelihood = log_sum(
+        -squares[..., None] / (2.0 * NOISE_DB**2) - (count - 1) * np.log(NOISE_DB) + LOG_NOISE_PRIOR, axis=-1
     ) - 0.5 * np.log(norm / count)
-    kinds = [log_likelihood[alternatives.kind == kind] for kind in np.unique(alternatives.kind)]
-    best = max(_log_sum(part.ravel()) - math.log(len(part)) - math.log(bearing.size) for part in kinds)
-    return float(best)
-
-
-def _with_deviation(
-    slices: _Slices,
-    bearing_deg: NDArray[np.float64],
-    lobe_db: NDArray[np.float64],
-    level_db: float,
-    noise_db: float | None,
-) -> NDArray[np.float64]:
-    """(v, j) log likelihood of the slices for each lobe and bearing, deviation, level and noise integrated out.
-
-    lobe_db: (v, 180) how far below the maximum each lobe is, every 2 degrees.
-    """
-    place = np.rint((np.subtract.outer(bearing_deg, slices.heading_deg) % 360.0) / BIN_DEG).astype(np.int64) % BINS
-    depth = lobe_db[:, place]
-    wave = 10.0 ** ((level_db - depth) / 10.0)
-    total = wave if noise_db is None else wave + 10.0 ** (noise_db / 10.0)
-    share = wave / total
-    spread = (LOBE_DB + (BESIDE_DB - LOBE_DB) * np.minimum(depth / DEPTH_DB, 1.0)) * share
-    apart = (np.subtract.outer(slices.heading_deg, slices.heading_deg) + 180.0) % 360.0 - 180.0
-    kernel = np.exp(-0.5 * (apart / ALIKE_DEG) ** 2)
-    variance, axes = np.linalg.eigh(kernel * spread[..., :, None] * spread[..., None, :])
-    residual = np.einsum("vjnk,vjn->vjk", axes, slices.power_db - 10.0 * np.log10(total))
-    by = np.einsum("vjnk,vjn->vjk", axes, share)
-    inverse = 1.0 / (np.maximum(variance, 0.0)[..., None, :] + _NOISE_DB[:, None] ** 2)
-    along = np.sum(by[..., None, :] * residual[..., None, :] * inverse, axis=-1)
-    norm = np.sum(by[..., None, :] ** 2 * inverse, axis=-1)
-    squares = np.sum(residual[..., None, :] ** 2 * inverse, axis=-1) - along**2 / norm
-    log_likelihood = -0.5 * squares + 0.5 * np.sum(np.log(inverse), axis=-1)
-    return _log_sum(log_likelihood - 0.5 * np.log(norm / place.shape[1]) + _LOG_NOISE_PRIOR, axis=-1)
-
-
-def _box(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(k, 180) means over a slice around each place, circular."""
-    half = _PER_SLICE // 2
-    return np.mean([np.roll(values, shift, axis=1) for shift in range(-half, half + 1)], axis=0)
-
-
-def _log_sum(values: NDArray[np.float64], axis: int | None = None) -> NDArray[np.float64]:
-    """log sum exp along an axis, or of all."""
-    top = np.max(values, axis=axis, keepdims=True)
-    total = np.log(np.sum(np.exp(values - top), axis=axis, keepdims=True)) + top
-    return np.asarray(np.squeeze(total, axis=axis), dtype=np.float64)
+    weighed = log_likelihood + alternatives.log_prior[:, None]
+    kinds = [alternatives.kind == kind for kind in np.unique(alternatives.kind)]
+    best = max(log_sum(weighed[own].ravel()) - log_sum(alternatives.log_prior[own]) for own in kinds)
+    return float(best) - math.log(bearing.size)

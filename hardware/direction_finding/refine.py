@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from hardware.direction_finding.alternatives import KINDS, Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.shape_fit import BearingGrid, Look, Templates
 from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep
 
 HUBER = 3.0
@@ -45,9 +46,6 @@ NEGLIGIBLE = 9.0
 FEWEST_FREE = 3.0
 FIRST_CORRELATION = 4.0
 """r assumed while the residuals are not known yet."""
-LARGEST_SHIFT_DB = 6.0
-SINGLE_THREAD = 2**18
-"""Multiplications in a matrix product up to which OpenBLAS keeps to one thread."""
 _SD_GRID = np.array([0.2, 0.35, 0.5, 0.7, 1.0, 1.4])
 _FADING_GRID = np.array([0.0, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
 _FADING_EVIDENCE = 2.0
@@ -122,17 +120,17 @@ def refine(
     centre = profile_minimum(curve, binned, near_deg, noise_db)
     steps = int(min(max(2.0 * curve.beam_deg / 3.0, 16.0), 60.0) / BIN_DEG)
     around: NDArray[np.float64] = centre + BIN_DEG * np.arange(-steps, steps + 1, dtype=np.float64)
-    grid = _Grid(binned, around)
+    grid = BearingGrid.of(binned, around)
     level_db = _level_db(curve, binned, centre, noise_db)
-    templates = _Templates(alternatives, level_db, noise_db)
+    templates = Templates(alternatives, level_db, noise_db)
     look = grid.look(templates, 0, steps, np.ones(grid.size))
     first = grid.cost(templates, _weights(look))
     free = max(grid.size / FIRST_CORRELATION, FEWEST_FREE)
     k, place = divmod(int(np.argmax(alternatives.log_prior[:, None] - 0.5 * free * np.log(first))), first.shape[1])
     look = grid.look(templates, k, place, _weights(look))
-    templates = _Templates(alternatives, level_db + look.shift_db, noise_db)
+    templates = Templates(alternatives, level_db + look.shift_db, noise_db)
     weight = _weights(look)
-    circle = _Grid(binned, np.arange(0.0, 360.0, COARSE_DEG))
+    circle = BearingGrid.of(binned, np.arange(0.0, 360.0, COARSE_DEG))
     return _posterior(
         alternatives,
         templates,
@@ -163,87 +161,7 @@ def profile_minimum(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float
     return float(grid[int(np.argmin(np.sum((power - predicted) ** 2 * count, axis=1)))])
 
 
-class _Templates:
-    """The alternatives at one level. db: (k, 180) with noise. share: (k, 180) of the wave in the power, None: all."""
-
-    def __init__(self, alternatives: Alternatives, level_db: float, noise_db: float | None) -> None:
-        self.level_db = level_db
-        power = alternatives.power * 10.0 ** (level_db / 10.0)
-        if noise_db is None:
-            self.db, self.share = _DB * np.log(power), None
-        else:
-            total = power + 10.0 ** (noise_db / 10.0)
-            self.db, self.share = _DB * np.log(total), power / total
-
-    def between(self, k: int, low: NDArray[np.int64], part: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """(n,) decibels, their slope a degree, and the wave's share at places low + part of template k."""
-        high = (low + 1) % BINS
-        db = self.db[k]
-        share = np.ones(part.size) if self.share is None else _mix(self.share[k][low], self.share[k][high], part)
-        return _mix(db[low], db[high], part), (db[high] - db[low]) / BIN_DEG, share
-
-
-@dataclass(frozen=True, slots=True)
-class _Look:
-    """The filled bins against one template at one bearing, its level fitted: by shift_db.
-
-    residual_db, share: (n,); slope: (n,) dB a degree of bearing, what a change of level explains taken out.
-    """
-
-    residual_db: NDArray[np.float64]
-    share: NDArray[np.float64]
-    slope: NDArray[np.float64]
-    shift_db: float
-
-
-class _Grid:
-    """The filled bins seen from (j,) bearings: template places b - h_i = (low + part) bins, both (n, j)."""
-
-    def __init__(self, binned: BinnedSweep, bearing_deg: NDArray[np.float64]) -> None:
-        self.bearing_deg = bearing_deg
-        self.heading_deg = binned.heading_deg[binned.filled]
-        self.power_db = binned.power_db[binned.filled]
-        self.size = self.power_db.size
-        at = (np.subtract.outer(bearing_deg, self.heading_deg).T % 360.0) / BIN_DEG
-        self.low = np.floor(at).astype(np.int64) % BINS
-        self.part = at - np.floor(at)
-
-    def look(self, templates: _Templates, k: int, place: int, weight: NDArray[np.float64]) -> _Look:
-        db, slope, share = templates.between(k, self.low[:, place], self.part[:, place])
-        # d(model) / d(level) = share
-        leverage = weight * share / np.sum(weight * share**2)
-        residual = self.power_db - db
-        shift = float(leverage @ residual)
-        steep = slope - share * float(leverage @ slope)
-        return _Look(residual - share * shift, share, steep, float(np.clip(shift, -LARGEST_SHIFT_DB, LARGEST_SHIFT_DB)))
-
-    def cost(self, templates: _Templates, weight: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(k, j) weighted sum of squares with the level profiled out, to first order in the level.
-
-        sum w (m - T - L s)^2 over L = sum w (m - T)^2 - (sum w s (m - T))^2 / sum w s^2, for all at once by matrices.
-        """
-        m = self.power_db
-        of_weight, of_power = self._spread(weight), self._spread(weight * m)
-        db, share = templates.db, templates.share
-        squares = (weight @ m**2) - 2.0 * _product(db, of_power) + _product(db**2, of_weight)
-        if share is None:
-            along, norm = weight @ m - _product(db, of_weight), np.full(1, weight.sum())
-        else:
-            along = _product(share, of_power) - _product(share * db, of_weight)
-            norm = np.maximum(_product(share**2, of_weight), 1e-9)
-        return np.maximum(squares - along**2 / norm, 1e-6)
-
-    def _spread(self, value: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(180, j) the bins' values at their places in the template, shared between the two next to them."""
-        count = self.bearing_deg.size
-        column = np.arange(count)
-        spread = np.zeros(BINS * count)
-        for place, part in ((self.low, 1.0 - self.part), ((self.low + 1) % BINS, self.part)):
-            spread += np.bincount((place * count + column).ravel(), (value[:, None] * part).ravel(), BINS * count)
-        return spread.reshape(BINS, count)
-
-
-def _weights(look: _Look) -> NDArray[np.float64]:
+def _weights(look: Look) -> NDArray[np.float64]:
     """(n,) inverse variances 1 / (e^2 + (f s)^2) with the likeliest e and f, times Huber's weights."""
     residual, share = look.residual_db, look.share
     scale = max(_standard_deviation(residual), 0.05)
@@ -260,9 +178,9 @@ def _weights(look: _Look) -> NDArray[np.float64]:
 
 def _posterior(
     alternatives: Alternatives,
-    templates: _Templates,
-    grid: _Grid,
-    look: _Look,
+    templates: Templates,
+    grid: BearingGrid,
+    look: Look,
     weight: NDArray[np.float64],
     costs: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
 ) -> Refined:
@@ -304,7 +222,7 @@ def _posterior(
     )
 
 
-def _alike(heading_deg: NDArray[np.float64], look: _Look, weight: NDArray[np.float64]) -> tuple[float, float]:
+def _alike(heading_deg: NDArray[np.float64], look: Look, weight: NDArray[np.float64]) -> tuple[float, float]:
     """(r, q) of the module's docstring, each at least 1."""
     z, turn = look.residual_db * np.sqrt(weight), look.slope * np.sqrt(weight)
     apart = np.abs((heading_deg[:, None] - heading_deg[None, :] + 180.0) % 360.0 - 180.0)
@@ -334,25 +252,12 @@ def _level_db(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, nois
     return top_db + 10.0 * math.log10(max(power, 1e-3))
 
 
-def _drawn(templates: _Templates, k: int, bearing_deg: float, shift_db: float) -> NDArray[np.float64]:
+def _drawn(templates: Templates, k: int, bearing_deg: float, shift_db: float) -> NDArray[np.float64]:
     """(180,) template k at the bins' centres."""
     at: NDArray[np.float64] = ((bearing_deg - (np.arange(BINS, dtype=np.float64) + 0.5) * BIN_DEG) % 360.0) / BIN_DEG
     low = np.floor(at).astype(np.int64) % BINS
     db, _, share = templates.between(k, low, at - np.floor(at))
     return db + share * shift_db
-
-
-def _product(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """left @ right in blocks too small for BLAS to share among threads, which on a busy machine wait for each other."""
-    rows = max(SINGLE_THREAD // right.size, 1)
-    product = np.empty((left.shape[0], right.shape[1]))
-    for first in range(0, left.shape[0], rows):
-        np.matmul(left[first : first + rows], right, out=product[first : first + rows])
-    return product
-
-
-def _mix(low: NDArray[np.float64], high: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(low * (1.0 - part) + high * part, dtype=np.float64)
 
 
 def _standard_deviation(residual: NDArray[np.float64]) -> float:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -198,13 +199,20 @@ def main() -> None:
     parser.add_argument("--sweeps", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--turntable", type=Path, help="measured table (angle_deg, gain_db) of another foreign antenna")
+    parser.add_argument("--jobs", type=int, default=1, help="processes; the rows have their own chance")
     add_out(parser)
     arguments = parser.parse_args()
     begun, rows = begin(__file__), dict[tuple[Mismatch, int, float], Found]()
-    for mismatch in mismatches(arguments.turntable):
-        for slices, snr_db in CASES:
-            print(mismatch.name, slices, snr_db, file=sys.stderr, flush=True)
-            rows[mismatch, slices, snr_db] = found(mismatch, slices, snr_db, arguments.sweeps, arguments.seed)
+    kinds = mismatches(arguments.turntable)
+    with ProcessPoolExecutor(arguments.jobs) as pool:
+        waited = [
+            (mismatch, case, pool.submit(found, mismatch, *case, arguments.sweeps, arguments.seed))
+            for mismatch in kinds
+            for case in CASES
+        ]
+        for mismatch, case, answer in waited:
+            rows[mismatch, *case] = answer.result()
+            print(mismatch.name, *case, file=sys.stderr, flush=True)
     table = Table(name="patterns", columns=COLUMNS, rows=tuple(row(*key, f) for key, f in rows.items()))
     print(markdown(table))
     title, page = "Bearings with the wrong pattern", "direction-finding.md#the-pattern-may-be-wrong"

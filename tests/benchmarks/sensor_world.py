@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -139,12 +140,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Bearings in the simulated world.")
     parser.add_argument("--sweeps", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=1, help="processes; each place has its own chance")
     add_out(parser)
     arguments = parser.parse_args()
     begun, pattern, heard = begin(__file__), simulated_antenna(), dict[Situation, Heard]()
-    for situation in SITUATIONS:
-        print(situation.name, file=sys.stderr, flush=True)
-        heard[situation] = heard_at(situation, arguments.sweeps, arguments.seed, pattern)
+    with ProcessPoolExecutor(arguments.jobs) as pool:
+        waited = [
+            (situation, pool.submit(heard_at, situation, arguments.sweeps, arguments.seed, pattern))
+            for situation in SITUATIONS
+        ]
+        for situation, answer in waited:
+            heard[situation] = answer.result()
+            print(situation.name, file=sys.stderr, flush=True)
     table = Table(name="places", columns=COLUMNS, rows=tuple(row(*found) for found in heard.items()))
     print(markdown(table))
     title, page = "Bearings in the simulated world", "direction-finding.md#how-good-it-is"

@@ -14,7 +14,9 @@ from hardware.direction_finding.alternatives import (
     PRIOR,
     Alternatives,
 )
-from hardware.direction_finding.comparison import beam
+from hardware.direction_finding.comparison import beam, known_right
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from tests.benchmarks.pattern_mismatch import deformed
 
 BEAM = beam(60.0)
 SHAPES = Alternatives.of(BEAM)
@@ -47,3 +49,22 @@ def test_looking_down_widens_the_lobe_and_keeps_its_sides() -> None:
     assert (np.diff(width) > 0).all()
     assert width[1] > (SHAPES.power[0] > 0.5).sum()
     assert np.allclose(below[:, 1:], below[:, :0:-1])
+
+
+@pytest.mark.parametrize("left", [0.7, 0.9])
+def test_an_unchecked_lobe_may_have_uneven_flanks(left: float) -> None:
+    bent = deformed(60.0, left=left, right=2.0 - left).gain_at(X)
+    waves = 10.0 * np.log10(SHAPES.power[SHAPES.kind == 0])
+    assert np.min(np.max(np.abs(waves - bent), axis=1)) < 0.1
+
+
+def test_a_checked_pattern_is_as_it_was_measured() -> None:
+    assert (Alternatives.of(known_right(BEAM)).kind == 0).sum() == 1
+
+
+def test_a_bent_lobe_goes_on_around_the_back_of_any_pattern() -> None:
+    """Between two places 2 degrees apart its gain changes hardly more than the measured pattern's does anywhere."""
+    shapes = Alternatives.of(load_pattern(SMALL_YAGI))
+    waves = 10.0 * np.log10(shapes.power[shapes.kind == 0])
+    steps = np.max(np.abs(waves - np.roll(waves, 1, axis=1)), axis=1)
+    assert (steps < 2.5 * steps[0]).all()

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.direction_finding.circle import FLOOR, LikelihoodError, SweepLikelihood
-from hardware.direction_finding.comparison import beam
+from hardware.direction_finding.comparison import beam, known_right
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from tests.benchmarks.pattern_mismatch import Mismatch, sweep_of
 
 FINDER = SparseDirectionFinder()
-NOMINAL = beam(60.0)
+NOMINAL = known_right(beam(60.0))
 
 
 def likelihood_of(echoes_db: tuple[float, ...], truth: float, seed: int) -> SweepLikelihood:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.comparison import known_right
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import (
     SMALL_YAGI,
@@ -70,10 +71,24 @@ def test_a_measured_antenna_through_the_default_pattern_is_no_worse_than_a_princ
     assert (np.abs(error) < 2.0 * np.array([r.sigma_deg for r in readings])).mean() >= 0.9
 
 
-def test_the_right_pattern_is_not_suspected_and_stays_sharp() -> None:
-    readings, error, _ = heard(ROWS["right pattern"], 16, 24)
+def test_the_right_pattern_is_not_suspected_and_stays_sharp_where_it_was_checked() -> None:
+    checked = known_right(ROWS["right pattern"].pattern)
+    readings, error, _ = heard(Mismatch("checked", checked, checked), 16, 24)
     assert not any(reading.remarks for reading in readings)
     assert rms(error) < 2.44  # 1.25 times the bound
+
+
+def test_the_right_pattern_that_nobody_checked_is_better_than_a_principal_axis() -> None:
+    """Its flanks may be uneven, so that it is less sharp."""
+    readings, error, axis = heard(ROWS["right pattern"], 16, 40)
+    assert not any(reading.remarks for reading in readings)
+    assert rms(error) < rms(axis)
+
+
+def test_uneven_flanks_cost_less_than_they_cost_a_principal_axis() -> None:
+    _, error, axis = heard(ROWS["flanks 0.75 and 1.25"], 36, 40)
+    assert rms(error) < rms(axis)
+    assert rms(error) < 9.0  # 10.8 without
 
 
 def test_a_turn_of_270_degrees_is_used_wherever_the_emitter_is() -> None:
