@@ -52,6 +52,7 @@ from backend.events.craft import (
     MissionStarted,
     Phase,
     PhaseChanged,
+    PlacePassed,
     PlaceReached,
     PlaceRefused,
     SweepStarted,
@@ -160,6 +161,7 @@ __all__ = [
     "PersonSource",
     "Phase",
     "PhaseChanged",
+    "PlacePassed",
     "PlaceReached",
     "PlaceRefused",
     "PlanChosen",
@@ -209,6 +211,7 @@ Event = Annotated[
     | PlaceRefused
     | FlightStarted
     | PlaceReached
+    | PlacePassed
     | SweepStarted
     | SweepRejected
     | HeardOnTheWay
