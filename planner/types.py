@@ -268,7 +268,8 @@ class Verdict:
     """localized, or the reasons why not yet.
 
     consistent: the wedges have a common point. estimate: what the belief says, None when the bearings are inconsistent.
-    against: indices of the bearings that do not point at the estimate.
+    against: indices of the bearings that do not point at the estimate. ways: of legs that may count as places, by name,
+    what they say of the estimate (planner.belief.seen_on_the_way).
     """
 
     localized: bool
@@ -276,3 +277,4 @@ class Verdict:
     reasons: tuple[NotYetReason, ...]
     estimate: Estimate | None = None
     against: tuple[int, ...] = ()
+    ways: tuple[tuple[str, float], ...] = ()

@@ -20,9 +20,10 @@ from backend.cli.field_gyration import GYRATION, circling, heard_circling
 from backend.cli.field_legs import Listens, flown, listened
 from backend.cli.field_rivals import RIVALS
 from backend.events import BearingMeasured, BeliefUpdated, CraftSource, HeardOnTheWay
+from backend.reasons.turning import WayToldEnough
 from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
-from backend.search.never_stop import PAUSE_S, why_turn_by_belief
+from backend.search.never_stop import PAUSE_S, turn_or_pass
 from backend.search.planning import decide, foreseen
 from backend.search.sector import (
     GoOn,
@@ -213,8 +214,8 @@ class FieldStudy:
 
     def _passes(self, leg: HeardOnTheWay, measured: Sequence[BearingMeasured], fact: BeliefUpdated) -> bool:
         """Whether a mission that never stops does not turn after this leg."""
-        told = bool(measured) and leg.tells and why_turn_by_belief(fact) is None
-        return self.spec.sensor.never_stop and told
+        asked = self.spec.sensor.never_stop and bool(measured) and leg.tells
+        return asked and isinstance(turn_or_pass(fact, [leg]), WayToldEnough)
 
     def _gyrated(self, seed: int) -> FieldMission:
         """The nose goes round all the time, and the craft flies on meanwhile."""

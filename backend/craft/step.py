@@ -25,7 +25,6 @@ from backend.events import (
     AlertCleared,
     AlertRaised,
     BearingMeasured,
-    CraftSource,
     Event,
     FlightStarted,
     OrderDone,
@@ -43,9 +42,9 @@ from backend.reasons import Instead, NotDone, NotLocalized, OrderedAgainLater, P
 from backend.reasons.flight import OrderName, PlaceUnsure, Proceeds, Way
 from backend.reasons.safety import BATTERY
 from backend.reasons.search import Localized
-from backend.reasons.turning import WayToldEnough
+from backend.reasons.turning import TurnsHere
 from backend.search.effects import Record
-from backend.search.never_stop import told_on_way, why_turn_before_belief, why_turn_by_belief
+from backend.search.never_stop import turn_or_pass, ways_to, why_turn_before_belief
 from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
 from hardware.reasons.vehicle_news import AutopilotSaidMore, AutopilotWords, ClockRateOdd
@@ -103,7 +102,7 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
     elif search.done:
         go_home(step, Localized())
     elif craft.chosen is not None and craft.reached:
-        turn_or_pass(step)
+        leave_or_turn(step)
     elif craft.chosen is not None and (accepted or craft.accepted or craft.automatic):
         place, number = craft.chosen.place, craft.place_number
         altitude = craft.chosen.altitude_amsl_m
@@ -135,17 +134,16 @@ def arrived(step: CraftStep) -> None:
         go_on(step, Proceeds("flight"))
 
 
-def turn_or_pass(step: CraftStep) -> None:
+def leave_or_turn(step: CraftStep) -> None:
     """With all that the way told in the belief."""
     craft = step.craft
     (emitter,) = step.search.emitters.values()
-    why = why_turn_by_belief(emitter.belief)
-    if why is not None:
+    why = turn_or_pass(emitter.belief, ways_to(emitter, craft.craft_id, craft.place_number))
+    if isinstance(why, TurnsHere):
         measure(step, why)
         return
-    told = WayToldEnough(told_on_way(emitter.legs, CraftSource(craft_id=craft.craft_id), craft.place_number))
-    step.record(PlacePassed(craft_id=craft.craft_id, place_number=craft.place_number, reason=told))
-    go_on(step, told)
+    step.record(PlacePassed(craft_id=craft.craft_id, place_number=craft.place_number, reason=why))
+    go_on(step, why)
 
 
 def take_off(step: CraftStep, reason: Reason) -> None:

@@ -39,7 +39,7 @@ from backend.events.bearings import (
     SweepRejected,
     TurnFact,
 )
-from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
+from backend.events.belief import BeliefUpdated, EstimateFact, LegSaid, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
 from backend.events.control import ControlAsked, ControlChanged, ControlKept, ControlWay, Holder
 from backend.events.craft import (
@@ -137,6 +137,7 @@ __all__ = [
     "ImportSource",
     "Known",
     "LandOrdered",
+    "LegSaid",
     "Level",
     "Link",
     "LinkLost",

@@ -113,18 +113,21 @@ class TurnsHere:
     code: Literal["turns_here"] = "turns_here"
     english: ClassVar[Words] = Words(
         "It turns here: {because?first=all directions are heard once before it flies on without turning"
-        "|told_nothing=the way here told nothing of the direction"
+        "|told_nothing=the way here told little of the direction"
         "|contradicts=what it heard contradicts what was believed}."
     )
 
 
 @dataclass(frozen=True, slots=True)
 class WayToldEnough:
-    """stretches: of the way to this place, that tell something."""
+    """likelier: the emitter is at the estimate, times, than in a direction at random, as the way here heard it."""
 
-    stretches: int
+    likelier: float
     code: Literal["way_told_enough"] = "way_told_enough"
-    english: ClassVar[Words] = Words("No turn here: {stretches|stretch|stretches} of the way here told the direction.")
+    english: ClassVar[Words] = Words(
+        "No turn here: by what was heard on the way here, the emitter is {likelier:1} times likelier at the estimate "
+        "than in a direction at random."
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ from backend.events import (
     EstimateFact,
     HeardOnTheWay,
     ImportSource,
+    LegSaid,
     PersonSource,
     SourceErrorsFact,
     SweepRejected,
@@ -244,6 +245,7 @@ class Localization:
             heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,
             sources=_errors_facts(shown, measured),
             digest=digest(shown),
+            legs=[LegSaid(leg_id=leg, said=round(said, 3)) for leg, said in said.ways],
         )
         return fact, shown
 

@@ -9,10 +9,12 @@ import math
 from collections.abc import Sequence
 
 from backend.events import BeliefUpdated, CraftSource, HeardOnTheWay
-from backend.reasons.turning import NeverStopNeeds, TurnsHere
+from backend.reasons.turning import NeverStopNeeds, TurnsHere, WayToldEnough
 from backend.search.errors import MissionInputError
 from backend.search.state import EmitterState
 from backend.spec import MissionSpec
+from planner.belief.seen_on_the_way import TELLS
+from planner.belief.verdict import TELLING_SIGMA
 from planner.reasons import BearingMissesArea, BearingsDisagree, EstimateContradicted
 from planner.types import Legs
 
@@ -23,6 +25,9 @@ LEG_SIGMA_DEG = 20.0
 1.5 nats at the truth in the mean, as much as a bearing of ln(sqrt(2 pi) / sigma) - 1 / 2."""
 PAUSE_S = 2.0
 """Between two legs: the belief is updated and the next place chosen."""
+ENOUGH = math.log(math.sqrt(2.0 * math.pi) / TELLING_SIGMA)
+"""Nats that the way has to say for the estimate if no turn is to be made: as a bearing of TELLING_SIGMA that points at
+it. A turn says more, and takes little longer than a leg."""
 CONTRADICTIONS = (EstimateContradicted, BearingsDisagree, BearingMissesArea)
 
 
@@ -64,21 +69,25 @@ def turned_before(emitter: EmitterState, source: CraftSource) -> bool:
     return any(bearing.source == source for bearing in emitter.bearings)
 
 
-def told_on_way(legs: Sequence[HeardOnTheWay], source: CraftSource, place_number: int) -> int:
-    """How many stretches of this craft's way to a place tell something."""
-    return sum(len(leg.stretches) for leg in legs if leg.source == source and leg.place_number == place_number)
+def ways_to(emitter: EmitterState, craft_id: str, place_number: int) -> tuple[HeardOnTheWay, ...]:
+    """What counts of this craft's way to a place."""
+    source = CraftSource(craft_id=craft_id)
+    return tuple(leg for leg in emitter.legs if leg.source == source and leg.place_number == place_number)
 
 
 def why_turn_before_belief(emitter: EmitterState, craft_id: str, place_number: int) -> TurnsHere | None:
     """Why a turn is needed whatever is believed after the way here."""
-    source = CraftSource(craft_id=craft_id)
-    if not turned_before(emitter, source):
+    if not turned_before(emitter, CraftSource(craft_id=craft_id)):
         return TurnsHere("first")
-    return None if told_on_way(emitter.legs, source, place_number) else TurnsHere("told_nothing")
+    return None if ways_to(emitter, craft_id, place_number) else TurnsHere("told_nothing")
 
 
-def why_turn_by_belief(belief: BeliefUpdated | None) -> TurnsHere | None:
-    """Why a turn is needed by what is believed now."""
+def turn_or_pass(belief: BeliefUpdated | None, ways: Sequence[HeardOnTheWay]) -> TurnsHere | WayToldEnough:
+    """By what is believed after the way here; of which the belief says what it tells of the estimate."""
     if belief is None or belief.estimate is None or any(isinstance(one, CONTRADICTIONS) for one in belief.not_yet):
         return TurnsHere("contradicts")
-    return None
+    here = {way.leg_id for way in ways}
+    said = sum(leg.said for leg in belief.legs if leg.leg_id in here)
+    if said <= -TELLS:
+        return TurnsHere("contradicts")
+    return WayToldEnough(math.exp(said)) if said >= ENOUGH else TurnsHere("told_nothing")

@@ -28,6 +28,7 @@ TELLS = 1.0
 class SeenFrom:
     """x, y: m ENU, the middle of a leg. said: l, of the estimate."""
 
+    leg: str
     x: float
     y: float
     said: float
@@ -51,10 +52,10 @@ def seen_on_the_way(belief: GridBelief, x: float, y: float) -> tuple[SeenFrom, .
     for stretch in belief.stretches:
         if belief.errors_of(stretch.source) is not None:
             legs.setdefault((stretch.source, stretch.leg), []).append(stretch)
-    return tuple(_seen(belief, source, stretches, x, y) for (source, _), stretches in legs.items())
+    return tuple(_seen(belief, *leg, stretches, x, y) for leg, stretches in legs.items())
 
 
-def _seen(belief: JointBelief, source: str, stretches: list[Stretch], x: float, y: float) -> SeenFrom:
+def _seen(belief: JointBelief, source: str, leg: str, stretches: list[Stretch], x: float, y: float) -> SeenFrom:
     errors = belief.errors_of(source)
     assert errors is not None
     scale, rate = np.array([errors.scale]), errors.outlier_rate
@@ -62,4 +63,4 @@ def _seen(belief: JointBelief, source: str, stretches: list[Stretch], x: float, 
     at = np.array([x]), np.array([y])
     ratio = np.exp(log_ratio(*at, found, np.array([errors.bias]), scale)).ravel()
     middle = np.mean([(np.mean(one.x), np.mean(one.y)) for one in stretches], axis=0)
-    return SeenFrom(float(middle[0]), float(middle[1]), float(np.log((1.0 - rate) * ratio + rate).sum()))
+    return SeenFrom(leg, float(middle[0]), float(middle[1]), float(np.log((1.0 - rate) * ratio + rate).sum()))

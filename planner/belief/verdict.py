@@ -72,7 +72,7 @@ def verdict(
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
         reasons.append(_error_reason(belief, mean, rule))
-    return Verdict(not reasons, consistent, tuple(reasons), spread, against)
+    return Verdict(not reasons, consistent, tuple(reasons), spread, against, tuple((w.leg, w.said) for w in ways))
 
 
 def missing_crossing(

@@ -752,7 +752,7 @@ export const de: Record<MessageKey, string> = {
   "edit.sectorTurns": "Nur so weit drehen, wie die Peilung braucht",
   "edit.listenOnTheWay": "Auch zwischen den Orten hören",
   "edit.swingOnTheWay": "Beim Hören die Nase pendeln lassen",
-  "edit.neverStop": "Nur drehen, wo der Weg nichts verriet",
+  "edit.neverStop": "Nur drehen, wo der Weg wenig verriet",
   "edit.wholeTurns": "Ganze Drehung an den ersten",
   "edit.bearingErrors": "Fehler, den alle Peilungen teilen (Kompass, Einbau)",
   "edit.bearingErrors.joint": "wird während der Suche geschätzt",

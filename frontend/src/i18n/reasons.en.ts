@@ -1806,11 +1806,11 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   turns_here: {
-    text: "It turns here: {because?first=all directions are heard once before it flies on without turning|told_nothing=the way here told nothing of the direction|contradicts=what it heard contradicts what was believed}.",
+    text: "It turns here: {because?first=all directions are heard once before it flies on without turning|told_nothing=the way here told little of the direction|contradicts=what it heard contradicts what was believed}.",
     remedy: "",
   },
   way_told_enough: {
-    text: "No turn here: {stretches|stretch|stretches} of the way here told the direction.",
+    text: "No turn here: by what was heard on the way here, the emitter is {likelier:1} times likelier at the estimate than in a direction at random.",
     remedy: "",
   },
   never_stop_needs: {

@@ -2345,7 +2345,8 @@ export interface components {
          *     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
          *     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
          *     significant: then nothing is claimed. `sources`: of a joint belief, which estimates the errors of each source and
-         *     uses them; empty of one that takes errors to be independent.
+         *     uses them; empty of one that takes errors to be independent. `legs`: what those that may count as places say of the
+         *     estimate, in a mission that never stops to turn.
          */
         BeliefUpdated: {
             /**
@@ -2364,6 +2365,7 @@ export interface components {
             heading_offset_std_error_deg: number | null;
             sources: components["schemas"]["SourceErrorsFact"][];
             digest: string;
+            legs: components["schemas"]["LegSaid"][];
         };
         /** @description Perpendicular to the major axis of the covariance ellipse; `distance` tells the two rules for how far off. */
         BesideEllipse: {
@@ -4288,6 +4290,14 @@ export interface components {
              * @enum {string}
              */
             code: "left_out_by_another";
+        };
+        /**
+         * @description Of a leg that may count as a place: by the natural logarithm of how much the emitter is likelier at the estimate
+         *     than in a direction at random, as the leg heard it.
+         */
+        LegSaid: {
+            leg_id: string;
+            said: number;
         };
         /** @description probability: that the sweep was heard with another antenna than the pattern's. */
         LikelyOtherAntenna: {
@@ -8947,9 +8957,9 @@ export interface components {
             /** @enum {string} */
             kind: "road" | "path" | "barrier";
         };
-        /** @description stretches: of the way to this place, that tell something. */
+        /** @description likelier: the emitter is at the estimate, times, than in a direction at random, as the way here heard it. */
         WayToldEnough: {
-            stretches: number;
+            likelier: number;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

@@ -32,16 +32,16 @@ export const turning = {
     remedy: "",
   },
   turns_here: {
-    text: "Es dreht hier: {because?first=Einmal werden alle Richtungen gehört, bevor es ohne Drehung weiterfliegt|told_nothing=Der Weg hierher verriet nichts über die Richtung|contradicts=Was es hörte, widerspricht dem bisher Angenommenen}.",
+    text: "Es dreht hier: {because?first=Einmal werden alle Richtungen gehört, bevor es ohne Drehung weiterfliegt|told_nothing=Der Weg hierher verriet wenig über die Richtung|contradicts=Was es hörte, widerspricht dem bisher Angenommenen}.",
     remedy: "",
   },
   way_told_enough: {
-    text: "Keine Drehung hier: {stretches|Abschnitt|Abschnitte} des Wegs hierher verrieten die Richtung.",
+    text: "Keine Drehung hier: Nach dem, was auf dem Weg hierher zu hören war, liegt der Sender {likelier:1}-mal so wahrscheinlich am geschätzten Ort wie in irgendeiner Richtung.",
     remedy: "",
   },
   never_stop_needs: {
     text:
-      "Nur zu drehen, wo der Weg nichts verriet, {what?one_emitter=geht mit einem Sender: Die Nase pendelt um eine Richtung" +
+      "Nur zu drehen, wo der Weg wenig verriet, {what?one_emitter=geht mit einem Sender: Die Nase pendelt um eine Richtung" +
       "|carrier=geht mit einem Dauerträger: Unterwegs sind von gepulsten Sendern zu wenige Pulse zu hören" +
       "|still=geht mit einem Sender, der sich nicht bewegt" +
       "|joint=braucht gemeinsam geschätzte Peilfehler" +
