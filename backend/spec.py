@@ -199,7 +199,8 @@ class SensorSpec(Model):
     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
     beyond what its antenna's file says; it is taken off where they are made. listen_on_the_way: of joint errors, what
     is heard between places counts too; a stored specification that does not say so means that it does not.
-    swing_on_the_way: the nose swings meanwhile, where it listens on the way.
+    swing_on_the_way: the nose swings meanwhile, where it listens on the way. never_stop: after the first place's whole
+    turn the craft turns at a place only where the way there told nothing, or against what is believed.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -220,6 +221,7 @@ class SensorSpec(Model):
     shared_errors: bool = False
     listen_on_the_way: bool = False
     swing_on_the_way: bool = False
+    never_stop: bool = False
 
 
 class PlannerSpec(Model):

@@ -58,7 +58,7 @@ DIRECTIONS = 1440
 class Stretch:
     """x, y: (n,) m ENU. front: (n,) rad ccw from east, unwrapped, where the antenna pointed by the compass. power_db:
     (n,). gain_db: (m,) as of `planner.detection.Silence`. source: whose compass. sigma: rad, of a bearing that the
-    sensor would have taken there."""
+    sensor would have taken there. leg: that it is a part of."""
 
     source: str
     x: tuple[float, ...]
@@ -67,6 +67,7 @@ class Stretch:
     power_db: tuple[float, ...]
     gain_db: tuple[float, ...]
     sigma: float
+    leg: str = ""
 
     @property
     def turned(self) -> float:

@@ -14,6 +14,7 @@ from planner.belief.grid import GridBelief, prior_belief
 from planner.belief.joint import joint_prior, update_joint
 from planner.kernels.crossing import meetings
 from planner.kernels.model import Tasks
+from planner.legs import first_time
 from planner.options import FIELD, PlannerOptions
 from planner.policy.claim_ahead import ClaimAhead, claim_ahead
 from planner.policy.dynamic_program import stands_on
@@ -116,7 +117,7 @@ def expected_time_from(
     )
     actions = simulation.first_actions(np.array([xy], dtype=float))
     if platform_xy is None:
-        actions.costs[0] = problem.measurement_time
+        actions.costs[0] = first_time(problem)
     if not np.isfinite(actions.costs[0]):
         raise PlannerError(NoWay(float(np.hypot(*(actions.places[0] - simulation.platform)))))
     ahead = claim_after(problem, belief, simulation) if options.method == "rollout" else None

@@ -152,6 +152,19 @@ class SectorTurns:
 
 
 @dataclass(frozen=True, slots=True)
+class Legs:
+    """The craft turns at no place: what it hears on the way there counts as a bearing from there.
+
+    least: m, of a leg; a shorter one tells nothing. sigma: rad, of the bearing that a leg is worth. pause: s, between
+    two legs.
+    """
+
+    least: float
+    sigma: float
+    pause: float
+
+
+@dataclass(frozen=True, slots=True)
 class Problem:
     """One localization task, everything that does not change while it is flown.
 
@@ -163,6 +176,7 @@ class Problem:
     rollouts. sector_turns: None: a measurement takes as long everywhere. next_source: who takes the bearings to come;
     None: who took those that came. ways: of somebody on the ground, with the only places to measure at; None: straight
     flights, around what is not flown over. crossing: what the next bearing must cross, where a claim waits for that.
+    legs: None: a bearing is a turn at its place.
     """
 
     area: Region
@@ -182,6 +196,7 @@ class Problem:
     next_source: str | None = None
     ways: Ways | None = None
     crossing: Crossing | None = None
+    legs: Legs | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,13 +252,15 @@ class LocalizationRule:
     """When "localized" may be said (design, mission rule 6).
 
     threshold: mu, m. min_places: from how many distinct places there must be bearings. min_place_distance: m between
-    distinct places. min_crossing_angle: rad, the best crossing angle of two bearing lines at the estimate.
+    distinct places. min_crossing_angle: rad, the best crossing angle of two bearing lines at the estimate. ways: a leg
+    on which the emitter was heard is such a place, too (planner.belief.seen_on_the_way).
     """
 
     threshold: float
     min_places: int = 2
     min_place_distance: float = 10.0
     min_crossing_angle: float = np.deg2rad(20.0)
+    ways: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,7 +268,8 @@ class Verdict:
     """localized, or the reasons why not yet.
 
     consistent: the wedges have a common point. estimate: what the belief says, None when the bearings are inconsistent.
-    against: indices of the bearings that do not point at the estimate.
+    against: indices of the bearings that do not point at the estimate. ways: of legs that may count as places, by name,
+    what they say of the estimate (planner.belief.seen_on_the_way).
     """
 
     localized: bool
@@ -259,3 +277,4 @@ class Verdict:
     reasons: tuple[NotYetReason, ...]
     estimate: Estimate | None = None
     against: tuple[int, ...] = ()
+    ways: tuple[tuple[str, float], ...] = ()

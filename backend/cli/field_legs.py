@@ -17,9 +17,9 @@ from hardware.yaw_swings import Seen, Swinging
 from planner.motion import flight_time
 from planner.types import FloatArray, FullMotion
 
-Listens = Literal["places", "way", "way_swinging"]
+Listens = Literal["places", "way", "way_swinging", "never_stopping"]
 """At places alone; on the way too, the nose turned to where it leads and then kept there; or on the way while the nose
-swings."""
+swings; or so, and without a turn at most places."""
 LISTENED_HZ = 10.0
 GRAVITY_M_S2 = 9.81
 

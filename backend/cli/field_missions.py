@@ -20,8 +20,10 @@ from backend.cli.field_gyration import GYRATION, circling, heard_circling
 from backend.cli.field_legs import Listens, flown, listened
 from backend.cli.field_rivals import RIVALS
 from backend.events import BearingMeasured, BeliefUpdated, CraftSource, HeardOnTheWay
+from backend.reasons.turning import WayToldEnough
 from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
+from backend.search.never_stop import PAUSE_S, turn_or_pass
 from backend.search.planning import decide, foreseen
 from backend.search.sector import (
     GoOn,
@@ -63,6 +65,7 @@ LATE_S = 400.0
 LOOK_S = 1.0
 """To brake, look, and turn on, when a sector was not enough."""
 
+SWINGING: tuple[Listens, ...] = ("way_swinging", "never_stopping")
 Turns = Literal["whole", "sector"]
 Errors = Literal["joint", "independent"]
 
@@ -121,7 +124,8 @@ def mission_of(options: FieldOptions) -> MissionSpec:
             "turn_rate_deg_s": options.turn_rate_deg_s,
             "sector_turns": options.turns == "sector",
             "listen_on_the_way": options.listens != "places",
-            "swing_on_the_way": options.listens == "way_swinging",
+            "swing_on_the_way": options.listens in SWINGING,
+            "never_stop": options.listens == "never_stopping",
         }
     )
     if options.errors == "joint":
@@ -162,10 +166,10 @@ class FieldStudy:
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
         measured, legs = list[BearingMeasured](), list[HeardOnTheWay]()
         here, heading, time_s = (0.0, 0.0), 0.0, 0.0
-        sweeps, retakes, turned_deg = 0, 0, 0.0
+        sweeps, retakes, passed, turned_deg = 0, 0, 0, 0.0
         way_deg, turned_at = 0.0, list[tuple[float, float]]()
         fact, belief = task.belief_fact(measured)
-        while not fact.localized and sweeps < self.spec.localization.maximum_bearings:
+        while not fact.localized and sweeps + passed < self.spec.localization.maximum_bearings:
             place = self._choose(task, belief, measured, here, rng)
             way = np.array(place) - np.array(here)
             length, flown_s = float(np.hypot(*way)), 0.0
@@ -184,9 +188,12 @@ class FieldStudy:
                     fact, belief = task.belief_fact(measured)
                 heading = direction
             here = place
-            turned_at.append(place)
             if fact.localized:
                 break
+            if length > 0.0 and legs and self._passes(legs[-1], measured, fact):
+                passed, time_s = passed + 1, time_s + PAUSE_S
+                continue
+            turned_at.append(place)
             for attempt in range(1, 2 + self.spec.sensor.maximum_retakes):
                 plan = self._turn(task, belief, measured, here, attempt)
                 swing_s = 0.0 if plan.begin_deg is None else _apart(heading, plan.begin_deg) / rate
@@ -204,6 +211,11 @@ class FieldStudy:
                 retakes += 1
             fact, belief = task.belief_fact(measured)
         return self._ended(field, fact, belief, measured, time_s, retakes, turned_deg + way_deg)
+
+    def _passes(self, leg: HeardOnTheWay, measured: Sequence[BearingMeasured], fact: BeliefUpdated) -> bool:
+        """Whether a mission that never stops does not turn after this leg."""
+        asked = self.spec.sensor.never_stop and bool(measured) and leg.tells
+        return asked and isinstance(turn_or_pass(fact, [leg]), WayToldEnough)
 
     def _gyrated(self, seed: int) -> FieldMission:
         """The nose goes round all the time, and the craft flies on meanwhile."""
@@ -272,7 +284,7 @@ class FieldStudy:
         here: tuple[float, float],
         place: tuple[float, float],
     ) -> Swinging | None:
-        if self.options.listens != "way_swinging":
+        if self.options.listens not in SWINGING:
             return None
         middle = (0.5 * (here[0] + place[0]), 0.5 * (here[1] + place[1]))
         expected, offset_deg = expected_here(task, belief, measured, middle), self.pattern.offset_to_nose_deg

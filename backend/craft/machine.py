@@ -52,6 +52,7 @@ from backend.craft.state import AUTOMATIC, HOMEWARD, ORDERED_BEFORE, CraftState
 from backend.craft.step import (
     CraftStep,
     alert,
+    arrived,
     bring_down,
     carried_out,
     clear_alerts,
@@ -225,7 +226,7 @@ def _finished(step: CraftStep, given: InTheAir | Planned | NothingToPlan | Arriv
             )
             for leg in given.heard:
                 step.record(leg)
-            measure(step, flight.Proceeds("flight"))
+            arrived(step)
         case SweepTaken(results=results) if craft.phase == "measuring":
             _swept(step, results)
         case _:

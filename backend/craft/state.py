@@ -34,6 +34,7 @@ from backend.events import (
     OrderTried,
     Phase,
     PhaseChanged,
+    PlacePassed,
     PlaceReached,
     PlaceRefused,
     PlanChosen,
@@ -59,7 +60,8 @@ HOMEWARD: frozenset[Phase] = frozenset({"returning", "landing"})
 class CraftState:
     """engaged: it was started for this mission and is not down since. searching: nor was it aborted.
 
-    chosen: the place proposed, flown to or measured at, None when the next is still to be planned. avoid: places vetoed
+    chosen: the place proposed, flown to or measured at, None when the next is still to be planned. reached: the craft
+    is there, and whether it turns there is not decided. avoid: places vetoed
     or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
     from the specification. refused: places that the autopilot would not fly to, since the search area changed;
     refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its way home. ladder: of the
@@ -79,6 +81,7 @@ class CraftState:
     took_off: bool = False
     chosen: PlanChosen | None = None
     accepted: bool = False
+    reached: bool = False
     attempt: int = 0
     place_number: int = 0
     avoid: tuple[Place, ...] = ()
@@ -135,7 +138,9 @@ def evolve(state: CraftState, event: Event) -> CraftState:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return replace(state, automatic=spec.flight.automatic, maximum_retakes=spec.sensor.maximum_retakes)
         case AreaChanged():
-            cleared = replace(state, chosen=None, accepted=False, avoid=(), refused=(), refused_in_a_row=0)
+            cleared = replace(
+                state, chosen=None, accepted=False, reached=False, avoid=(), refused=(), refused_in_a_row=0
+            )
             return replace(cleared, nets_wait=state.engaged)
         case NetsHung():
             return replace(state, nets_wait=False)
@@ -149,6 +154,7 @@ def evolve(state: CraftState, event: Event) -> CraftState:
                 state,
                 phase=after,
                 phase_reason=reason,
+                reached=state.reached and after in ("planning", "measuring"),
                 return_reason=back,
                 ladder=state.ladder if ordered else None,
                 engaged=state.engaged and up,
@@ -195,7 +201,9 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
     """The place in hand: chosen, flown to, measured at, given up."""
     match event:
         case PlanChosen(place_number=number, source=source):
-            return replace(state, chosen=event, place_number=number, accepted=source == "operator", attempt=0)
+            return replace(
+                state, chosen=event, place_number=number, accepted=source == "operator", reached=False, attempt=0
+            )
         case PlanVetoed(place=place):
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, place))
         case PlaceRefused(place=place):
@@ -203,11 +211,13 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             in_a_row = state.refused_in_a_row + 1
             return replace(state, chosen=None, accepted=False, refused=refused, refused_in_a_row=in_a_row)
         case PlaceReached():
-            return replace(state, refused_in_a_row=0)
+            return replace(state, refused_in_a_row=0, reached=True)
+        case PlacePassed():
+            return replace(state, chosen=None, accepted=False, reached=False, avoid=())
         case FlightStarted():
-            return replace(state, accepted=True)
+            return replace(state, accepted=True, reached=False)
         case SweepStarted(attempt=attempt):
-            return replace(state, attempt=attempt)
+            return replace(state, attempt=attempt, reached=False)
         case SweepRejected(attempt=attempt, place=place) if _ours(state, event):
             if state.chosen is None:  # the same turn heard another emitter: this one is not to be sought here again
                 return replace(state, avoid=(*state.avoid, place))

@@ -33,15 +33,18 @@ from backend.events import (
     Outcome,
     Phase,
     PhaseChanged,
+    PlacePassed,
     SafetyVetoed,
     SweepStarted,
     Topic,
 )
 from backend.reasons import Instead, NotDone, NotLocalized, OrderedAgainLater, PlacesUsedUp, Reason
-from backend.reasons.flight import OrderName, PlaceUnsure, Way
+from backend.reasons.flight import OrderName, PlaceUnsure, Proceeds, Way
 from backend.reasons.safety import BATTERY
 from backend.reasons.search import Localized
+from backend.reasons.turning import TurnsHere
 from backend.search.effects import Record
+from backend.search.never_stop import turn_or_pass, ways_to, why_turn_before_belief
 from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
 from hardware.reasons.vehicle_news import AutopilotSaidMore, AutopilotWords, ClockRateOdd
@@ -98,6 +101,8 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
         step.go("planning", reason)
     elif search.done:
         go_home(step, Localized())
+    elif craft.chosen is not None and craft.reached:
+        leave_or_turn(step)
     elif craft.chosen is not None and (accepted or craft.accepted or craft.automatic):
         place, number = craft.chosen.place, craft.place_number
         altitude = craft.chosen.altitude_amsl_m
@@ -113,6 +118,32 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
     else:
         step.go("planning", reason)
         step.do(PlanNext(search.place_number + 1, (*craft.avoid, *craft.refused)))
+
+
+def arrived(step: CraftStep) -> None:
+    """At a place: it turns there; of a mission that never stops, only where it has to, which may show in the belief."""
+    emitters = tuple(step.search.emitters.values())
+    if not step.search.mission.sensor.never_stop or len(emitters) != 1:
+        measure(step, Proceeds("flight"))
+        return
+    craft = step.craft
+    why = why_turn_before_belief(emitters[0], craft.craft_id, craft.place_number)
+    if why is not None:
+        measure(step, why)
+    else:
+        go_on(step, Proceeds("flight"))
+
+
+def leave_or_turn(step: CraftStep) -> None:
+    """With all that the way told in the belief."""
+    craft = step.craft
+    (emitter,) = step.search.emitters.values()
+    why = turn_or_pass(emitter.belief, ways_to(emitter, craft.craft_id, craft.place_number))
+    if isinstance(why, TurnsHere):
+        measure(step, why)
+        return
+    step.record(PlacePassed(craft_id=craft.craft_id, place_number=craft.place_number, reason=why))
+    go_on(step, why)
 
 
 def take_off(step: CraftStep, reason: Reason) -> None:

@@ -39,7 +39,7 @@ from backend.events.bearings import (
     SweepRejected,
     TurnFact,
 )
-from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
+from backend.events.belief import BeliefUpdated, EstimateFact, LegSaid, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
 from backend.events.control import ControlAsked, ControlChanged, ControlKept, ControlWay, Holder
 from backend.events.craft import (
@@ -52,6 +52,7 @@ from backend.events.craft import (
     MissionStarted,
     Phase,
     PhaseChanged,
+    PlacePassed,
     PlaceReached,
     PlaceRefused,
     SweepStarted,
@@ -136,6 +137,7 @@ __all__ = [
     "ImportSource",
     "Known",
     "LandOrdered",
+    "LegSaid",
     "Level",
     "Link",
     "LinkLost",
@@ -160,6 +162,7 @@ __all__ = [
     "PersonSource",
     "Phase",
     "PhaseChanged",
+    "PlacePassed",
     "PlaceReached",
     "PlaceRefused",
     "PlanChosen",
@@ -209,6 +212,7 @@ Event = Annotated[
     | PlaceRefused
     | FlightStarted
     | PlaceReached
+    | PlacePassed
     | SweepStarted
     | SweepRejected
     | HeardOnTheWay

@@ -38,13 +38,22 @@ class SourceErrorsFact(Fact):
     outlier_rate: float
 
 
+class LegSaid(Fact):
+    """Of a leg that may count as a place: by the natural logarithm of how much the emitter is likelier at the estimate
+    than in a direction at random, as the leg heard it."""
+
+    leg_id: str
+    said: float
+
+
 class BeliefUpdated(Fact):
     """The belief about one emitter after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt
     belief can be compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
     significant: then nothing is claimed. `sources`: of a joint belief, which estimates the errors of each source and
-    uses them; empty of one that takes errors to be independent."""
+    uses them; empty of one that takes errors to be independent. `legs`: what those that may count as places say of the
+    estimate, in a mission that never stops to turn."""
 
     kind: Literal["belief_updated"] = "belief_updated"
     emitter_id: Id
@@ -58,3 +67,4 @@ class BeliefUpdated(Fact):
     heading_offset_std_error_deg: Known = None
     sources: list[SourceErrorsFact] = Field(default_factory=list[SourceErrorsFact])
     digest: str
+    legs: list[LegSaid] = Field(default_factory=list[LegSaid])

@@ -103,6 +103,15 @@ class PlaceReached(Fact):
     flight_time_s: float
 
 
+class PlacePassed(Fact):
+    """The craft does not turn at a place that it reached, and why: of a mission that never stops to turn."""
+
+    kind: Literal["place_passed"] = "place_passed"
+    craft_id: Id
+    place_number: int
+    reason: Reason
+
+
 class SweepStarted(Fact):
     """attempt: counts the turns at this place from 1."""
 

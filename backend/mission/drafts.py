@@ -21,6 +21,7 @@ from backend.search.errors import MissionConflict
 from backend.search.importing import Upload, import_facts, imported_before
 from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
+from backend.search.never_stop import check_never_stop
 from backend.search.task import search_task
 from backend.spec import MissionSpec, Place
 
@@ -127,4 +128,5 @@ def _check_spec(spec: MissionSpec) -> None:
     """Raises MissionInputError when the altitude lies outside its band, or when the areas make no sense, wherever the
     vehicle is: a mission may be planned far from it, or hold recordings only. Preflight refuses to fly it there."""
     check_band(spec.flight)
+    check_never_stop(spec)
     search_task(spec, centre_of(spec.area), 0.0)

@@ -105,6 +105,52 @@ class NothingFoundYet:
     english: ClassVar[Words] = Words("Turned {by_deg} further: what was heard gave no bearing yet.")
 
 
+@dataclass(frozen=True, slots=True)
+class TurnsHere:
+    """Of a craft that never stops to turn, at a place where it does."""
+
+    because: Literal["first", "told_nothing", "contradicts"]
+    code: Literal["turns_here"] = "turns_here"
+    english: ClassVar[Words] = Words(
+        "It turns here: {because?first=all directions are heard once before it flies on without turning"
+        "|told_nothing=the way here told little of the direction"
+        "|contradicts=what it heard contradicts what was believed}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WayToldEnough:
+    """likelier: the emitter is at the estimate, times, than in a direction at random, as the way here heard it."""
+
+    likelier: float
+    code: Literal["way_told_enough"] = "way_told_enough"
+    english: ClassVar[Words] = Words(
+        "No turn here: by what was heard on the way here, the emitter is {likelier:1} times likelier at the estimate "
+        "than in a direction at random."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NeverStopNeeds:
+    """What the option of never stopping to turn asks for."""
+
+    what: Literal["one_emitter", "carrier", "still", "joint", "swings", "whole_turns", "rollouts"]
+    code: Literal["never_stop_needs"] = "never_stop_needs"
+    english: ClassVar[Words] = Words(
+        "Never stopping to turn {what?one_emitter=is for one emitter: the nose swings about one direction"
+        "|carrier=is for a carrier: a tag's pulses are too few on the way"
+        "|still=is for an emitter that stands still"
+        "|joint=needs joint bearing errors"
+        "|swings=needs listening on the way and the nose's swings there"
+        "|whole_turns=does not go with sectors: where it turns after all, it hears all directions"
+        "|rollouts=needs the planner that simulates flights}.",
+        "{what?one_emitter=Turn it off, or look for one emitter|carrier=Turn it off"
+        "|still=Turn it off|joint=Choose joint errors, or turn it off"
+        "|swings=Turn both on, or turn this off|whole_turns=Turn one of them off"
+        "|rollouts=Choose that planner, or turn this off}.",
+    )
+
+
 StopReason = MaximumSeen | WholeCircleSeen
 GoOnReason = MaximumAtEdge | QualityPoor | ElsewherePossible | BearingUncertain | NothingFoundYet
-TurnReason = WholeTurn | SectorExpected | StopReason | GoOnReason
+TurnReason = WholeTurn | SectorExpected | StopReason | GoOnReason | TurnsHere | WayToldEnough | NeverStopNeeds

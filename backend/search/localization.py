@@ -25,6 +25,7 @@ from backend.events import (
     EstimateFact,
     HeardOnTheWay,
     ImportSource,
+    LegSaid,
     PersonSource,
     SourceErrorsFact,
     SweepRejected,
@@ -35,6 +36,7 @@ from backend.search import area
 from backend.search.area import EDGE_TOLERANCE_M
 from backend.search.errors import MissionInputError
 from backend.search.given import motion_of, prior_of
+from backend.search.never_stop import legs_of
 from backend.search.silences import EAST_DEG, silences_of
 from backend.search.source_priors import priors_of
 from backend.search.way_facts import stretches_of
@@ -248,6 +250,7 @@ class Localization:
             heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,
             sources=_errors_facts(shown, measured),
             digest=digest(shown),
+            legs=[LegSaid(leg_id=leg, said=round(said, 3)) for leg, said in said.ways],
         )
         return fact, shown
 
@@ -316,6 +319,7 @@ def localization(
         estimator=planner.estimator,
         prior=prior_of(emitter.prior, frame),
         sector_turns=_sector_turns(mission),
+        legs=legs_of(mission),
     )
     if (walk := _walk(emitter.movement)) is not None:
         problem = replace(problem, threshold=walk.goal(wanted.expected_rmse_m, sensor.measurement_time_s))
@@ -324,6 +328,7 @@ def localization(
         min_places=wanted.minimum_places,
         min_place_distance=wanted.minimum_place_distance_m,
         min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
+        ways=sensor.never_stop,
     )
     try:
         prior = _prior_belief(problem, sensor, emitter.movement)

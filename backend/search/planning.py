@@ -22,6 +22,7 @@ from planner.belief.grid import GridBelief
 from planner.belief.joint import SMALLEST_SIGMA, JointBelief
 from planner.belief.moving import MovingBelief
 from planner.belief.verdict import missing_crossing
+from planner.legs import flown_by_legs
 from planner.movement import FLIGHT_S
 from planner.plan import expected_time_from, plan
 from planner.policy.actions import SAME_PLACE_M
@@ -128,9 +129,22 @@ def decide(
 
 def to_plan(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
     """What is foreseen, and what the next bearing must cross where a claim waits for nothing but that."""
-    problem = foreseen(task.problem, measured, belief)
+    problem = foreseen_to_plan(task.problem, measured, belief)
     crossing = missing_crossing(problem, task.rule, task.planner_bearings(measured), belief)
     return replace(problem, crossing=crossing)
+
+
+def foreseen_to_plan(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
+    """What is foreseen of the bearings to come, those of legs where the craft turns at no place. It turns at the first
+    one: until then all are foreseen as turns, so that a preview says rather too much."""
+    found = foreseen(problem, measured, belief)
+    if found.legs is None or not any(isinstance(fact.source, CraftSource) for fact in measured):
+        return replace(found, legs=None)
+    errors = belief.errors_of(source_name(measured[-1].source)) if isinstance(belief, JointBelief) else None
+    if errors is not None:
+        sigma = math.hypot(errors.scale * found.legs.sigma, errors.bias_sd)
+        found = replace(found, legs=replace(found.legs, sigma=sigma))
+    return flown_by_legs(found)
 
 
 def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief | None = None) -> Problem:
@@ -262,7 +276,7 @@ def cost_of(
     """Time until localized when the next bearing is taken at `place` (m ENU)."""
     try:
         found = expected_time_from(
-            foreseen(task.problem, measured, belief),
+            foreseen_to_plan(task.problem, measured, belief),
             belief,
             task.planner_bearings(measured),
             place,

@@ -94,6 +94,7 @@ def stretches_of(fact: HeardOnTheWay, frame: LocalFrame, source: str) -> tuple[S
             power_db=tuple(readings.power_db[here].tolist()),
             gain_db=tuple(gain.tolist()),
             sigma=math.radians(fact.sigma_deg),
+            leg=fact.leg_id,
         )
         for here in _of_each(readings)
     )

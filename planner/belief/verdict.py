@@ -11,6 +11,7 @@ from planner.belief.estimate import estimate, mass_within, radius_of
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief, corrected
 from planner.belief.moving import MovingBelief, corrected_moving, where_it_may_be
+from planner.belief.seen_on_the_way import SeenFrom, seen_on_the_way
 from planner.crossing import Crossing
 from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
@@ -43,7 +44,8 @@ def verdict(
     """Localized, or why not yet. belief: None when the bearings are inconsistent.
 
     With a joint belief the bearings are judged as it reads them, freed of the bias of their source.
-    Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing.
+    Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing. Of
+    legs, where the rule has them, only those that speak for it; those that speak against it contradict as bearings do.
     The estimate's expected error is the stated one.
     """
     if belief is None:
@@ -56,18 +58,21 @@ def verdict(
     if not bearings:
         return Verdict(False, consistent, (NoBearingYet(),), spread)
     against = tuple(i for i, b in enumerate(bearings) if not points_at(b, spread.x, spread.y))
-    supporting = _supporting(belief, bearings, spread)
+    supporting, ways = _supporting(belief, bearings, spread), _ways(rule, belief, spread)
+    seen = [*supporting, *(_line(one, spread) for one in ways if one.sees)]
+    said = [*bearings, *(_line(one, spread) for one in ways if one.sees or one.against)]
+    against_it = len(against) + sum(one.against for one in ways)
     reasons: list[NotYetReason] = [
-        *_place_reasons(rule, bearings, supporting),
-        *_angle_reasons(rule, supporting, spread.x, spread.y),
+        *_place_reasons(rule, said, seen),
+        *_angle_reasons(rule, seen, spread.x, spread.y),
     ]
-    if against and len(supporting) < max(3, 2 * len(against)):
-        reasons.append(EstimateContradicted(len(against), len(bearings)))
+    if against_it and len(seen) < max(3, 2 * against_it):
+        reasons.append(EstimateContradicted(against_it, len(said)))
     elif not wedges_meet(area, _towards(supporting, spread)):
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
         reasons.append(_error_reason(belief, mean, rule))
-    return Verdict(not reasons, consistent, tuple(reasons), spread, against)
+    return Verdict(not reasons, consistent, tuple(reasons), spread, against, tuple((w.leg, w.said) for w in ways))
 
 
 def missing_crossing(
@@ -76,6 +81,7 @@ def missing_crossing(
     """What the next bearing must cross; None where the error is still too large, or the lines cross widely enough."""
     spread = stated(belief, estimate(belief, problem.estimator))
     supporting = _supporting(belief, _as_read(belief, bearings, spread), spread)
+    supporting += [_line(one, spread) for one in _ways(rule, belief, spread) if one.sees]
     if not spread.expected_rmse < rule.threshold or not _angle_reasons(rule, supporting, spread.x, spread.y):
         return None
     directions = [float(expected_bearing(b.x, b.y, spread.x, spread.y)) for b in supporting]
@@ -90,6 +96,17 @@ def _as_read(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) 
 
 def _supporting(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) -> list[Bearing]:
     return [b for b in bearings if points_at(b, spread.x, spread.y) and _tells(belief, b)]
+
+
+def _ways(rule: LocalizationRule, belief: GridBelief, spread: Estimate) -> tuple[SeenFrom, ...]:
+    """Legs that may count as places."""
+    return seen_on_the_way(belief, spread.x, spread.y) if rule.ways else ()
+
+
+def _line(seen: SeenFrom, spread: Estimate) -> Bearing:
+    """From the middle of a leg to the estimate, of which it speaks."""
+    angle = float(expected_bearing(seen.x, seen.y, spread.x, spread.y))
+    return Bearing(seen.x, seen.y, angle, TELLING_SIGMA)
 
 
 def _towards(supporting: Sequence[Bearing], spread: Estimate) -> list[Bearing]:

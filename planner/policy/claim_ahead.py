@@ -28,6 +28,7 @@ from planner.belief.joint import JointBelief
 from planner.belief.source_errors import SourceErrors
 from planner.belief.verdict import FAR_ERRORS, MOST_BEYOND
 from planner.kernels.claim import BiasedCells, ClaimRule, Claims, Draws, claim_chances
+from planner.legs import first_time
 from planner.motion import flight_time
 from planner.policy.fisher import gain_beside_bias
 from planner.reasons import QuickestPlace
@@ -128,7 +129,7 @@ def claim_ahead(
         return None
     places = allowed()
     gains = gain_beside_bias(now, places, errors, problem.sigma, nearest=belief.h)
-    straight = flight_time(problem.motion, np.hypot(*(places - platform).T), np.pi / 2) + problem.measurement_time
+    straight = flight_time(problem.motion, np.hypot(*(places - platform).T), np.pi / 2) + first_time(problem)
     judged = np.ascontiguousarray(places[np.argsort(-gains / straight, kind="stable")[:PLACES_JUDGED]])
     costs = costs_of(judged)
     judged, costs = judged[np.isfinite(costs)], costs[np.isfinite(costs)]

@@ -13,6 +13,7 @@ from planner.belief.grid import GridBelief
 from planner.geometry import distance_to_convex, distance_to_edges
 from planner.kernels.value.lookup import Frame, after_at, blended, principal_frame
 from planner.kernels.value.model import nodes
+from planner.legs import far_enough
 from planner.motion import flight_time
 from planner.options import BasePolicy
 from planner.policy.actions import Usable, constrained_actions
@@ -74,6 +75,7 @@ def best_places(
         places = _allowed(problem, belief, np.concatenate((_half_steps(frame), here[None])), usable)
     if len(places) < 2:
         places = constrained_actions(problem, belief, usable)
+    places = far_enough(problem, here, places)
     seconds = _flights(problem, here, places) + after_at(after, nodes(), frame, places)
     order = np.argsort(seconds, kind="stable")
     chosen = _apart(places[order], count, max(LEAST_APART, SHARE_APART * frame.s1))

@@ -14,6 +14,7 @@ import numpy as np
 
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
+from planner.legs import far_enough
 from planner.options import BasePolicy, DiscreteSelection, Sampling
 from planner.policy.actions import Usable, constrained_actions, without_refused
 from planner.policy.claim_ahead import ClaimAhead, choice, claim_ahead
@@ -140,7 +141,7 @@ def claim_after(
     """
 
     def left(places: FloatArray) -> FloatArray:
-        return without_refused(places, without, problem, belief)
+        return far_enough(problem, simulation.platform, without_refused(places, without, problem, belief))
 
     return claim_ahead(
         problem,
@@ -237,7 +238,8 @@ class Rollout:
         self, problem: Problem, belief: GridBelief, simulation: Simulation, program: ProgramTable | None
     ) -> FloatArray:
         def left(places: FloatArray) -> FloatArray:
-            return without_refused(places, self.without, problem, belief)
+            allowed = without_refused(places, self.without, problem, belief)
+            return far_enough(problem, simulation.platform, allowed)
 
         def reached(places: FloatArray) -> FloatArray:
             return places[np.isfinite(simulation.first_actions(places).costs)]

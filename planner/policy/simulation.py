@@ -40,6 +40,7 @@ from planner.kernels.model import (
     outcomes,
 )
 from planner.kernels.value.model import nodes
+from planner.legs import first_time
 from planner.motion import flight_time, turn_between, validate_motion
 from planner.observation import THINNEST
 from planner.options import BasePolicy
@@ -94,7 +95,7 @@ class Simulation:
             distances = travel_distances(self.problem, self.graph, self.platform, places)
         directions = np.arctan2(flights[:, 1], flights[:, 0])
         turns = UNKNOWN_TURN if self.heading is None else turn_between(self.heading, directions)
-        costs = flight_time(self.problem.motion, distances, turns) + self.problem.measurement_time
+        costs = flight_time(self.problem.motion, distances, turns) + first_time(self.problem)
         rule = self.problem.sector_turns
         if rule is not None and self.belief is not None:
             costs = costs + turning_lead(rule, self.belief, places, self.problem.sigma)

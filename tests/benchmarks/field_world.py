@@ -35,6 +35,7 @@ ROWS: Mapping[str, FieldOptions] = {
     "whole": FieldOptions(),
     "sector": FieldOptions(turns="sector"),
     "swings": FieldOptions(turns="sector", listens="way_swinging"),
+    "never_stopping": FieldOptions(listens="never_stopping"),
     "wedge": FieldOptions(errors="independent"),
     "wedge_wide": FieldOptions(errors="independent", heading_sigma_deg=8.0),
     "fisher": FieldOptions("fisher"),

@@ -50,6 +50,11 @@ const number = (path: string, label: MessageKey, unit: Unit, limits: Partial<Num
 const isJoint = ({ sensor }: MissionSpec) => sensor.bearing_errors === "joint";
 
 /** A tag's pulses, and several emitters at once, take whole turns. */
+/** Also where it is on and may not be: it has to be there to be turned off. */
+const mayNeverStop = (spec: MissionSpec) =>
+  spec.sensor.never_stop === true ||
+  (isJoint(spec) && isOneCarrier(spec) && spec.sensor.listen_on_the_way === true && spec.sensor.swing_on_the_way === true);
+
 const isOneCarrier = ({ emitters: [first, ...others] }: MissionSpec) => others.length === 0 && first?.kind === "carrier";
 
 export const sections: readonly Section[] = [
@@ -130,6 +135,7 @@ export const sections: readonly Section[] = [
         more: true,
         when: (spec) => isJoint(spec) && spec.sensor.listen_on_the_way === true,
       },
+      { kind: "switch", path: "sensor.never_stop", label: "edit.neverStop", more: true, when: mayNeverStop },
     ],
   },
   {

@@ -340,6 +340,7 @@ export const pagesEn = {
   "edit.sectorTurns": "Turn only as far as the bearing needs",
   "edit.listenOnTheWay": "Listen between places, too",
   "edit.swingOnTheWay": "Swing the nose while listening",
+  "edit.neverStop": "Turn only where the way told little",
   "edit.wholeTurns": "Whole turns at the first",
   "edit.bearingErrors": "Error that all bearings share (compass, mounting)",
   "edit.bearingErrors.joint": "estimated during the search",

@@ -102,6 +102,8 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.flight_started", { number: event.place_number });
     case "place_reached":
       return t("event.place_reached", { number: event.place_number, time: formatDuration(event.flight_time_s) });
+    case "place_passed":
+      return t("event.place_passed", { number: event.place_number, reason: reasonText(event.reason) });
     case "sweep_started":
       return event.attempt > 1
         ? t("event.sweep_again", { number: event.place_number, attempt: event.attempt })

@@ -26,6 +26,7 @@ const OF_THE_DESK: ReadonlySet<EventKind> = new Set([
   "plan_vetoed",
   "flight_started",
   "place_reached",
+  "place_passed",
   "order_done",
 ]);
 

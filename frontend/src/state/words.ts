@@ -62,6 +62,11 @@ function noseSwings(spec: MissionView["spec"]): boolean {
   return spec.sensor.bearing_errors === "joint" && spec.emitters.some(({ movement }) => movement.kind === "still");
 }
 
+/** Whether no turn is foreseen at the next place: after the first whole turn, of a mission that never stops. */
+function passesNext({ spec, bearings }: MissionView): boolean {
+  return spec?.sensor.never_stop === true && bearings.some(({ fact, excluded }) => fact.source.kind === "craft" && !excluded);
+}
+
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
 export function stateWords(mission: MissionView, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.nextPlaceNumber;
@@ -70,7 +75,8 @@ export function stateWords(mission: MissionView, etaS: number | null): string {
   switch (mission.phase) {
     case "flying": {
       const flies = etaS === null ? t("state.flying", { number }) : t("state.flyingEta", { number, time: formatDuration(etaS) });
-      return noseSwings(mission.spec) ? `${flies} · ${t("state.noseSwings")}` : flies;
+      if (!noseSwings(mission.spec)) return flies;
+      return `${flies} · ${t(passesNext(mission) ? "state.listensOnTheWay" : "state.noseSwings")}`;
     }
     case "planning":
       return t("state.planning", { number: mission.nextPlaceNumber });

@@ -90,6 +90,7 @@ def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
         craft.counting_down,
         craft.countdown_stopped,
         craft.chosen is None,
+        craft.reached,
         "vehicle" in craft.links_down,
         ladder and (ladder.way, ladder.stage),
     )

@@ -31,6 +31,29 @@ export const turning = {
     text: "Um {by_deg} weitergedreht: Die Peilung war noch um {sigma_deg:1} unsicher.",
     remedy: "",
   },
+  turns_here: {
+    text: "Es dreht hier: {because?first=Einmal werden alle Richtungen gehört, bevor es ohne Drehung weiterfliegt|told_nothing=Der Weg hierher verriet wenig über die Richtung|contradicts=Was es hörte, widerspricht dem bisher Angenommenen}.",
+    remedy: "",
+  },
+  way_told_enough: {
+    text: "Keine Drehung hier: Nach dem, was auf dem Weg hierher zu hören war, liegt der Sender {likelier:1}-mal so wahrscheinlich am geschätzten Ort wie in irgendeiner Richtung.",
+    remedy: "",
+  },
+  never_stop_needs: {
+    text:
+      "Nur zu drehen, wo der Weg wenig verriet, {what?one_emitter=geht mit einem Sender: Die Nase pendelt um eine Richtung" +
+      "|carrier=geht mit einem Dauerträger: Unterwegs sind von gepulsten Sendern zu wenige Pulse zu hören" +
+      "|still=geht mit einem Sender, der sich nicht bewegt" +
+      "|joint=braucht gemeinsam geschätzte Peilfehler" +
+      "|swings=braucht das Hören unterwegs und das Pendeln der Nase" +
+      "|whole_turns=verträgt sich nicht mit Sektoren: Wo es doch dreht, hört es alle Richtungen" +
+      "|rollouts=braucht den Planer, der Flüge simuliert}.",
+    remedy:
+      "{what?one_emitter=Abschalten oder nur einen Sender suchen|carrier=Abschalten" +
+      "|still=Abschalten|joint=Fehler gemeinsam schätzen lassen oder abschalten" +
+      "|swings=Beides einschalten oder dies abschalten|whole_turns=Eines von beiden abschalten" +
+      "|rollouts=Diesen Planer wählen oder dies abschalten}.",
+  },
   nothing_found_yet: {
     text: "Um {by_deg} weitergedreht: Das Gehörte ergab noch keine Peilung.",
     remedy: "",
