@@ -65,6 +65,7 @@ from backend.events.mission import (
     MissionEnded,
     MissionPhase,
     Outcome,
+    PrioritiesChanged,
     ServerRestarted,
 )
 from backend.events.nets import NetsHung, NetsNoted, NetsPutBack
@@ -83,7 +84,7 @@ from backend.events.orders import (
     ResumeOrdered,
     ReturnOrdered,
 )
-from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
+from backend.events.plans import CandidateFact, ForecastFact, PlanChosen, PlanVetoed, SetBackFact
 from backend.events.review import (
     MissionBroughtIn,
     MissionDeleted,
@@ -129,6 +130,7 @@ __all__ = [
     "Event",
     "Fact",
     "FlightStarted",
+    "ForecastFact",
     "GroundFact",
     "HeardOnTheWay",
     "HoldOrdered",
@@ -165,6 +167,7 @@ __all__ = [
     "PlanChosen",
     "PlanVetoed",
     "PreflightChecked",
+    "PrioritiesChanged",
     "Recorded",
     "RecordingImported",
     "ResumeOrdered",
@@ -172,6 +175,7 @@ __all__ = [
     "ReviewFact",
     "SafetyVetoed",
     "ServerRestarted",
+    "SetBackFact",
     "SilenceFact",
     "SourceErrorsFact",
     "SourceMuteChanged",
@@ -187,7 +191,7 @@ __all__ = [
     "VariantKept",
 ]
 
-FORM = 4
+FORM = 5
 """Of these facts, as they are stored and exported; a field more is a form more. See backend.store.upgrade."""
 
 ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
@@ -196,6 +200,7 @@ Event = Annotated[
     MissionDrafted
     | MissionEdited
     | AreaChanged
+    | PrioritiesChanged
     | PreflightChecked
     | AntennaChecked
     | MissionStarted

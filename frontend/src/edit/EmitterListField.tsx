@@ -1,5 +1,9 @@
 // Several emitters as a list to paste into. What is wrong is said line by line, and nothing is taken until all is right.
 import { type MessageKey, t } from "../i18n";
+import { OrderButtons } from "../panels/OrderButtons";
+import { emitterName } from "../state/emitterName";
+import { inOrder, orderWords, type Priorities, placeOf, prioritiesOf } from "../state/importance";
+import type { EmitterSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";
 import { badLineWords, LIST, listOf, readList } from "./emitterList";
@@ -13,6 +17,30 @@ function take(text: string): void {
   const kept = Object.fromEntries(Object.entries(now.text).filter(([path]) => path !== LIST && !OWN.includes(path)));
   if (bad.length > 0 || emitters.length === 0) update({ ...now, text: { ...kept, [LIST]: text } });
   else update({ ...now, spec: { ...now.spec, emitters }, text: kept });
+}
+
+function order(priorities: Priorities): void {
+  const now = draft.peek()!;
+  update({ ...now, spec: { ...now.spec, emitters: inOrder(now.spec.emitters, priorities) } });
+}
+
+/** Nothing to put in order while the list is not understood. */
+function Order({ emitters }: { emitters: readonly EmitterSpec[] }) {
+  return (
+    <details class="more" data-testid="emitter-order">
+      <summary>
+        {t("order.change")}: {orderWords(emitters, prioritiesOf(emitters))}
+      </summary>
+      <ol class="order-rows">
+        {emitters.map(({ emitter_id: id }) => (
+          <li key={id} data-place={placeOf(emitters, id) ?? ""} data-testid={`order-${id}`}>
+            <span>{emitterName(emitters, id)}</span>
+            <OrderButtons emitters={emitters} id={id} onOrder={order} />
+          </li>
+        ))}
+      </ol>
+    </details>
+  );
 }
 
 export function EmitterListField() {
@@ -46,6 +74,7 @@ export function EmitterListField() {
           </div>
         ))}
       </div>
+      {raw === undefined && spec.emitters.length > 1 && <Order emitters={spec.emitters} />}
     </div>
   );
 }

@@ -13,6 +13,8 @@ import { extent } from "../state/geometry";
 import { type MissionState, missionAt } from "../state/mission";
 import type { Route } from "../state/route";
 import { settings } from "../state/settings";
+import { claimedAfterS } from "../state/claimedAfter";
+import { placeOf } from "../state/importance";
 import { judge } from "../state/truth";
 import { viewOf } from "../state/view";
 import { formatPlace } from "../units/coordinates";
@@ -37,6 +39,8 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
   const judged = estimate && place ? judge(estimate, place) : null;
   const left = bearings.filter((b) => b.excluded).length;
   const parts = estimate ? polygonsOf(estimate.c95 as Area) : [];
+  const number = placeOf(spec?.emitters ?? [], emitterId);
+  const after = told.mission.emitters.size > 1 ? claimedAfterS(told.events, emitterId) : null;
   const reach = extent(parts.flatMap(([outline]) => outline ?? []));
   return (
     <section data-testid="report-emitter">
@@ -49,6 +53,11 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
             })
           : t("report.nothing")}
       </p>
+      {(number !== null || after !== null) && (
+        <p data-testid="report-order">
+          {number !== null && t("report.priority", { number: number })} {after !== null && t("report.after", { time: formatDuration(after) })}
+        </p>
+      )}
       {estimate && (
         <p>
           {t("report.region", {
