@@ -269,12 +269,12 @@ class UnheardForLong:
 
 @dataclass(frozen=True, slots=True)
 class UnclearForLong:
-    """Of an emitter that would come first. beliefs: in a row whose bearings contradicted each other."""
+    """Of an emitter that would come first. places: with a turn since its bearings contradict each other."""
 
-    beliefs: int
+    places: int
     code: Literal["unclear_for_long"] = "unclear_for_long"
     english: ClassVar[Words] = Words(
-        "Its bearings contradicted each other {beliefs|time|times} in a row; the others come first until they agree.",
+        "Its bearings have contradicted each other for {places|place|places}; the others come first until they agree.",
         "Look at its bearings and leave out a wrong one, or set the order again.",
     )
 

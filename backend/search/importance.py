@@ -30,8 +30,8 @@ LAST = MOST_EMITTERS + 1
 
 UNHEARD_PLACES = 3
 """In a row. The area is looked at from elsewhere after each; what three places do not hear is found by chance."""
-UNCLEAR_BELIEFS = 3
-"""In a row. One contradiction is mended by the next bearing as a rule."""
+UNCLEAR_PLACES = 5
+"""In a row. One wrong bearing among others contradicts them for good, and is outvoted by two or three more."""
 FIRST_PLACES = 10
 """Chosen for it first. In 60 simulated missions the first of four tags took 5 bearings in the mean."""
 
@@ -40,12 +40,13 @@ SetBack = UnheardForLong | UnclearForLong | FirstForLong
 
 @dataclass(frozen=True, slots=True)
 class Patience:
-    """What an emitter has used up of it. unheard_at: places in a row where turns did not hear it. unclear: beliefs in a
-    row whose bearings contradict each other. first: whether the present place was chosen for it first; first_at: such
-    places with a turn, since it was localized last."""
+    """What an emitter has used up of it. unheard_at: places in a row where turns did not hear it. unclear:
+    whether its bearings contradict each other; unclear_at: places with a turn since they do. first: whether the present
+    place was chosen for it first; first_at: such places with a turn, since it was localized last."""
 
     unheard_at: frozenset[int] = frozenset()
-    unclear: int = 0
+    unclear: bool = False
+    unclear_at: frozenset[int] = frozenset()
     first: bool = False
     first_at: frozenset[int] = frozenset()
 
@@ -54,8 +55,8 @@ class Patience:
         """Why it stands back, None while it may come first."""
         if len(self.unheard_at) >= UNHEARD_PLACES:
             return UnheardForLong(len(self.unheard_at))
-        if self.unclear >= UNCLEAR_BELIEFS:
-            return UnclearForLong(self.unclear)
+        if len(self.unclear_at) >= UNCLEAR_PLACES:
+            return UnclearForLong(len(self.unclear_at))
         if len(self.first_at) >= FIRST_PLACES:
             return FirstForLong(len(self.first_at))
         return None
@@ -63,14 +64,17 @@ class Patience:
     def turned(self, place_number: int, *, heard: bool) -> Patience:
         """After a turn at a place."""
         unheard_at = frozenset[int]() if heard else self.unheard_at | {place_number}
+        unclear_at = self.unclear_at | {place_number} if self.unclear else self.unclear_at
         first_at = self.first_at | {place_number} if self.first else self.first_at
-        return replace(self, unheard_at=unheard_at, first_at=first_at)
+        return replace(self, unheard_at=unheard_at, unclear_at=unclear_at, first_at=first_at)
 
     def believed(self, belief: BeliefUpdated) -> Patience:
         """After another belief about it."""
         if belief.localized:
-            return replace(self, unclear=0, first_at=frozenset())
-        return replace(self, unclear=self.unclear + 1 if belief.estimate is None or not belief.consistent else 0)
+            return replace(self, unclear=False, unclear_at=frozenset(), first_at=frozenset())
+        if belief.consistent:
+            return replace(self, unclear=False, unclear_at=frozenset())
+        return replace(self, unclear=True)
 
 
 FRESH = Patience()

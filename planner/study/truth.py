@@ -47,7 +47,8 @@ class Claim:
     that the error is beyond three times what it states.
 
     bias_off_deg, bias_sd_deg: what the belief was wrong by about the bias of the bearings, and what it stated of that
-    (NaN: it knows none). found_s: of one of several emitters, until it was claimed, else until the mission's end.
+    (NaN: it knows none). found_s: of one of several emitters, until it was claimed, else until the mission's end; None
+    where there is but one.
     """
 
     seed: int
@@ -61,7 +62,7 @@ class Claim:
     time_s: float
     bias_off_deg: float
     bias_sd_deg: float
-    found_s: float = float("nan")
+    found_s: float | None = None
 
     @property
     def beyond(self) -> bool:
@@ -260,8 +261,8 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNO
 def _first_s(claims: Sequence[Claim]) -> float | None:
     """Of each mission the first emitter's, which is the first claim with its seed; None where there is but one."""
     first = {claim.seed: claim.found_s for claim in reversed(claims)}
-    times = list(first.values())
-    return None if np.isnan(times).any() else float(np.mean(times))
+    times = [time for time in first.values() if time is not None]
+    return float(np.mean(times)) if times else None
 
 
 def _rounded(value: Any) -> Any:

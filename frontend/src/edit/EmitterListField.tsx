@@ -2,7 +2,7 @@
 import { type MessageKey, t } from "../i18n";
 import { OrderButtons } from "../panels/OrderButtons";
 import { emitterName } from "../state/emitterName";
-import { inOrder, orderWords, type Priorities, placeOf, prioritiesOf } from "../state/importance";
+import { inOrder, importanceWords, type Priorities, placeOf, prioritiesOf } from "../state/importance";
 import type { EmitterSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";
@@ -29,7 +29,7 @@ function Order({ emitters }: { emitters: readonly EmitterSpec[] }) {
   return (
     <details class="more" data-testid="emitter-order">
       <summary>
-        {t("order.change")}: {orderWords(emitters, prioritiesOf(emitters))}
+        {t("order.change")}: {importanceWords(emitters, prioritiesOf(emitters))}
       </summary>
       <ol class="order-rows">
         {emitters.map(({ emitter_id: id }) => (

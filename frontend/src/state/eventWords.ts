@@ -3,7 +3,7 @@ import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
 import { emitterName } from "./emitterName";
-import { orderWords } from "./importance";
+import { importanceWords } from "./importance";
 import { wayWords } from "./wayWords";
 import { authorityWords, checkName, phaseName, sourceName } from "./words";
 
@@ -62,7 +62,7 @@ export function eventWords({ event }: Recorded, units: UnitSystem, emitters: rea
   const about = "emitter_id" in event && emitters.length > 1 ? event.emitter_id : null;
   const words =
     event.kind === "priorities_changed"
-      ? t("event.priorities_changed", { by: byWords(event.by), order: orderWords(emitters, event.priorities) })
+      ? t("event.priorities_changed", { by: byWords(event.by), order: importanceWords(emitters, event.priorities) })
       : wordsOf(event, units);
   return about === null ? words : `${emitterName(emitters, about)}: ${words}`;
 }

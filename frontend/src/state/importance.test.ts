@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { someSpec } from "../wire/examples";
-import { groupsOf, inOrder, move, orderWords, placeOf, putFirst } from "./importance";
+import { groupsOf, inOrder, move, importanceWords, placeOf, putFirst } from "./importance";
 
 const [one] = someSpec().emitters;
 const emitters = (...priorities: (number | null)[]) =>
@@ -39,7 +39,7 @@ it("half a step leaves those alike, or joins the next; each is undone by its opp
 });
 
 it("the order in words names every group", () => {
-  expect(orderWords(emitters(null, null, null), { e3: 1 })).toBe("hare 3, then the others");
-  expect(orderWords(emitters(null, null, null), { e3: 1, e1: 2, e2: 2 })).toBe("hare 3, then hare 1 and hare 2");
-  expect(orderWords(emitters(null, null), {})).toBe("all alike");
+  expect(importanceWords(emitters(null, null, null), { e3: 1 })).toBe("hare 3, then the others");
+  expect(importanceWords(emitters(null, null, null), { e3: 1, e1: 2, e2: 2 })).toBe("hare 3, then hare 1 and hare 2");
+  expect(importanceWords(emitters(null, null), {})).toBe("all alike");
 });

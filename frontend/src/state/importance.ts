@@ -57,7 +57,7 @@ export const inOrder = (emitters: readonly EmitterSpec[], priorities: Priorities
   emitters.map((emitter) => ({ ...emitter, priority: priorities[emitter.emitter_id] ?? null }));
 
 /** "hare 3, then hare 1 and hare 2; then the others". */
-export function orderWords(emitters: readonly EmitterSpec[], priorities: Priorities): string {
+export function importanceWords(emitters: readonly EmitterSpec[], priorities: Priorities): string {
   const groups = groupsOf(inOrder(emitters, priorities));
   if (groups.length < 2) return t("order.alike");
   const unnamed = groups.at(-1)!.some((id) => priorities[id] === undefined);

@@ -13,7 +13,7 @@ QUICK = PlannerOptions(budget=60)
 
 def test_the_rows_that_are_asked_for_exist_and_no_other():
     several = {"tags_4": 4, "tags_8": 8}
-    assert TAGS == several | {f"{row}_{more}": tags for row, tags in several.items() for more in ("bias5", "first")}
+    assert several | {f"{row}_{more}": tags for row, tags in several.items() for more in ("bias5", "first")} == TAGS
     with pytest.raises(StudyError, match="tags_8"):
         next(tags_missions("tags_5", [1], "independent"))
 
@@ -43,12 +43,11 @@ def test_the_tag_that_comes_first_is_flown_for_and_every_claim_says_when_it_was_
     alike, ordered = (
         [fly_tags(world, 3, seed, "independent", QUICK, first=some) for seed in seeds] for some in (False, True)
     )
-    assert alike != ordered
-    found = [np.mean([claims[0].found_s for claims in missions]) for missions in (alike, ordered)]
+    found = [np.mean([claims[0].found_s or np.nan for claims in missions]) for missions in (alike, ordered)]
     assert found[1] < found[0]
     for claims in (*alike, *ordered):
-        assert all(claim.found_s <= claim.time_s for claim in claims)
-        assert max(claim.found_s for claim in claims) == claims[0].time_s
+        times = [claim.found_s for claim in claims if claim.found_s is not None]
+        assert (len(times), max(times)) == (3, claims[0].time_s)
 
 
 def test_the_independent_model_has_no_errors_to_share():

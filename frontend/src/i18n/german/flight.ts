@@ -94,7 +94,7 @@ export const flight = {
     remedy: "Die Reihenfolge erneut setzen, um ihn trotzdem zuerst zu suchen.",
   },
   unclear_for_long: {
-    text: "Seine Peilungen haben sich {beliefs}-mal nacheinander widersprochen; die anderen kommen zuerst, bis sie zusammenpassen.",
+    text: "Seine Peilungen widersprechen sich seit {places|Ort|Orten}; die anderen kommen zuerst, bis sie zusammenpassen.",
     remedy: "Die Peilungen ansehen und eine falsche weglassen, oder die Reihenfolge erneut setzen.",
   },
   first_for_long: {
