@@ -2,7 +2,7 @@
 import { type MessageKey, t } from "../i18n";
 import { OrderButtons } from "../panels/OrderButtons";
 import { emitterName } from "../state/emitterName";
-import { inOrder, importanceWords, type Priorities, placeOf, prioritiesOf } from "../state/importance";
+import { importanceWords, inOrder, type Priorities, placeOf, prioritiesOf } from "../state/importance";
 import type { EmitterSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";

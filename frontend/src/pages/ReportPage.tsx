@@ -6,15 +6,15 @@ import { ProblemBox } from "../panels/ProblemNote";
 import { ReportMap } from "../panels/ReportMap";
 import * as api from "../sources/api";
 import { polygonsOf } from "../state/areas";
+import { claimedAfterS } from "../state/claimedAfter";
 import { emitterName } from "../state/emitterName";
 import { eventWords } from "../state/eventWords";
 import { isTold } from "../state/flown";
 import { extent } from "../state/geometry";
+import { placeOf } from "../state/importance";
 import { type MissionState, missionAt } from "../state/mission";
 import type { Route } from "../state/route";
 import { settings } from "../state/settings";
-import { claimedAfterS } from "../state/claimedAfter";
-import { placeOf } from "../state/importance";
 import { judge } from "../state/truth";
 import { viewOf } from "../state/view";
 import { formatPlace } from "../units/coordinates";
@@ -55,7 +55,8 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
       </p>
       {(number !== null || after !== null) && (
         <p data-testid="report-order">
-          {number !== null && t("report.priority", { number: number })} {after !== null && t("report.after", { time: formatDuration(after) })}
+          {number !== null && t("report.priority", { number: number })}{" "}
+          {after !== null && t("report.after", { time: formatDuration(after) })}
         </p>
       )}
       {estimate && (

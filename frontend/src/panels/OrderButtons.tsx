@@ -14,7 +14,7 @@ export function OrderButtons({ emitters, id, onOrder }: Properties) {
   const name = emitterName(emitters, id);
   const alone = placeOf(emitters, id) === 1 && move(emitters, id, "sooner") === null;
   return (
-    <span class="order-buttons" role="group" aria-label={t("order.of", { name })}>
+    <fieldset class="order-buttons" aria-label={t("order.of", { name })}>
       <button type="button" data-testid={`first-${id}`} aria-pressed={alone} onClick={() => onOrder(putFirst(emitters, id))}>
         {t("order.first")}
       </button>
@@ -35,6 +35,6 @@ export function OrderButtons({ emitters, id, onOrder }: Properties) {
           </button>
         );
       })}
-    </span>
+    </fieldset>
   );
 }

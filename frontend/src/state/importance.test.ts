@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { someSpec } from "../wire/examples";
-import { groupsOf, inOrder, move, importanceWords, placeOf, putFirst } from "./importance";
+import { groupsOf, importanceWords, inOrder, move, placeOf, putFirst } from "./importance";
 
 const [one] = someSpec().emitters;
 const emitters = (...priorities: (number | null)[]) =>

@@ -15,8 +15,8 @@ import type {
   SearchArea,
 } from "../wire";
 import { type CraftState, emptyCraft, foldCraft } from "./craft";
-import { inOrder } from "./importance";
 import { type At, type EmitterState, emptyEmitter, foldEmitter, type MutedSources, muteEmitter, sourceKey } from "./emitter";
+import { inOrder } from "./importance";
 
 /** craftId, emitterId: whom it concerns; null of both: the whole mission. */
 export interface Alert {

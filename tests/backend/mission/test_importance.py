@@ -29,6 +29,7 @@ def test_in_no_phase_does_it_move_a_craft(phase: str) -> None:
 
 def test_what_is_being_planned_is_planned_again_and_a_proposal_too() -> None:
     walk = Walk(TWO_SPEC).to("planning")
+    walk.believe()
     assert of_craft(walk.command(SECOND_FIRST)) == [effects.PlanNext(1, ())]
     proposed = Walk(WAITING_TWO).to("waiting")
     assert proposed.craft.chosen is not None

@@ -10,7 +10,7 @@ def test_the_order_of_importance_stands_with_what_is_told_of_an_emitter(of_two_e
     before, after = (json.loads(geojson(told, tracks))["features"] for told in (of_two_emitters, fox_first))
     assert not any("priority" in one["properties"] for one in before)
     told = {one["properties"].get("emitter"): one["properties"].get("priority") for one in after}
-    assert told == {None: None, "fox": 1, "wildlife tag": None}
+    assert told == {None: None, "fox & <hound>": 1, "tag": None}
     kept = [one["properties"] for one in after]
     for properties in kept:
         properties.pop("priority", None)
