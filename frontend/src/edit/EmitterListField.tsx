@@ -1,8 +1,9 @@
 // Several emitters as a list to paste into. What is wrong is said line by line, and nothing is taken until all is right.
 import { type MessageKey, t } from "../i18n";
 import { OrderButtons } from "../panels/OrderButtons";
+import { PlaceInOrder } from "../panels/PlaceInOrder";
 import { emitterName } from "../state/emitterName";
-import { importanceWords, inOrder, type Priorities, placeOf, prioritiesOf } from "../state/importance";
+import { importanceWords, inOrder, type Priorities, prioritiesOf } from "../state/importance";
 import type { EmitterSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";
@@ -33,8 +34,11 @@ function Order({ emitters }: { emitters: readonly EmitterSpec[] }) {
       </summary>
       <ol class="order-rows">
         {emitters.map(({ emitter_id: id }) => (
-          <li key={id} data-place={placeOf(emitters, id) ?? ""} data-testid={`order-${id}`}>
-            <span>{emitterName(emitters, id)}</span>
+          <li key={id}>
+            <span>
+              {emitterName(emitters, id)}
+              <PlaceInOrder emitters={emitters} id={id} />
+            </span>
             <OrderButtons emitters={emitters} id={id} onOrder={order} />
           </li>
         ))}

@@ -1666,7 +1666,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Set the order again to look for it first all the same.",
   },
   unclear_for_long: {
-    text: "Its bearings contradicted each other {beliefs|time|times} in a row; the others come first until they agree.",
+    text: "Its bearings have contradicted each other for {places|place|places}; the others come first until they agree.",
     remedy: "Look at its bearings and leave out a wrong one, or set the order again.",
   },
   first_for_long: {

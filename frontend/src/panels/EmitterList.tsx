@@ -6,7 +6,6 @@ import { source } from "../state/connection";
 import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
 import { emitterName } from "../state/emitterName";
-import { placeOf } from "../state/importance";
 import { cursor, emittersThen } from "../state/moment";
 import { selectedEmitter } from "../state/selection";
 import { settings } from "../state/settings";
@@ -14,6 +13,7 @@ import { mission, shownTimeMs } from "../state/shown";
 import { remainingTimes } from "../state/timeLeft";
 import { formatDuration, formatLength } from "../units/quantities";
 import { OrderButtons } from "./OrderButtons";
+import { PlaceInOrder } from "./PlaceInOrder";
 import { ProblemNote } from "./ProblemNote";
 
 const ordering = signal(false);
@@ -52,7 +52,6 @@ export function EmitterList() {
         {emitters.map(({ emitter_id: id, frequency_hz }, index) => {
           const { fill, ink } = emitterColour(index);
           const localized = states.get(id)?.belief?.fact.localized ?? false;
-          const place = placeOf(emitters, id);
           const left = localized ? undefined : times.get(id);
           return (
             <li key={id} class={open ? "in-order" : ""}>
@@ -61,7 +60,6 @@ export function EmitterList() {
                 class="emitter-row"
                 data-testid={`emitter-${id}`}
                 data-localized={localized}
-                data-place={place ?? ""}
                 aria-pressed={id === emitterId}
                 onClick={() => (selectedEmitter.value = id)}
               >
@@ -71,12 +69,7 @@ export function EmitterList() {
                 <span class="emitter-name">
                   <span>
                     {emitterName(emitters, id)}
-                    {place !== null && !back.has(id) && (
-                      <span class="emitter-place" data-testid={`place-${id}`}>
-                        {place === 1 ? t("order.isFirst") : t("order.isNumber", { number: place })}
-                      </span>
-                    )}
-                    {back.has(id) && <span class="emitter-place">{t("order.isBack")}</span>}
+                    <PlaceInOrder emitters={emitters} id={id} standsBack={back.has(id)} />
                   </span>
                   <small>{t("emitters.mhz", { mhz: Number((frequency_hz / 1e6).toFixed(4)) })}</small>
                 </span>

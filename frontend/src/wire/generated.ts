@@ -8699,9 +8699,9 @@ export interface components {
              */
             code: "two_recordings";
         };
-        /** @description Of an emitter that would come first. beliefs: in a row whose bearings contradicted each other. */
+        /** @description Of an emitter that would come first. places: with a turn since its bearings contradict each other. */
         UnclearForLong: {
-            beliefs: number;
+            places: number;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
