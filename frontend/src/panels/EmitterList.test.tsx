@@ -42,6 +42,14 @@ it("says who comes first, and how long each takes at least until it is found", (
   expect(part("left-c")).toBeNull();
 });
 
+it("puts what comes first at the top, and lets no row move while the order is being set", () => {
+  const order = () => [...document.querySelectorAll("[data-testid^=emitter-]")].map((row) => row.getAttribute("data-testid"));
+  show();
+  expect(order()).toEqual(["emitter-b", "emitter-a", "emitter-c"]);
+  press("order");
+  expect(order()).toEqual(["emitter-a", "emitter-b", "emitter-c"]);
+});
+
 it("marks the one that stands back", () => {
   show(somePlan({ set_back: [{ emitter_id: "b", reason: { code: "unheard_for_long", places: 3 } }] }));
   expect(part("emitter-b")?.textContent).toContain("stands back");

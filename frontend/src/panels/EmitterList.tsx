@@ -6,6 +6,7 @@ import { source } from "../state/connection";
 import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
 import { emitterName } from "../state/emitterName";
+import { groupsOf } from "../state/importance";
 import { cursor, emittersThen } from "../state/moment";
 import { selectedEmitter } from "../state/selection";
 import { settings } from "../state/settings";
@@ -35,6 +36,8 @@ export function EmitterList() {
   const steers = missionId !== null && startedAt !== null && !ended && cursor.value === null && (source.value?.takesCommands ?? false);
   const back = new Set(ended ? [] : plan?.fact.set_back?.map((one) => one.emitter_id));
   const open = steers && ordering.value;
+  // what is pressed stays under the thumb
+  const rows = open ? emitters.map((e) => e.emitter_id) : groupsOf(emitters).flat();
   const times = remainingTimes(mission.value, shownTimeMs.value);
   return (
     <div class="emitters" data-testid="emitters" data-found={found}>
@@ -48,8 +51,9 @@ export function EmitterList() {
       </p>
       {open && <p class="muted order-hint">{t("order.hint")}</p>}
       <ProblemNote desk="order" />
-      <ol>
-        {emitters.map(({ emitter_id: id, frequency_hz }, index) => {
+      <ol class={open ? "whole" : ""}>
+        {rows.map((id) => {
+          const index = emitters.findIndex((e) => e.emitter_id === id);
           const { fill, ink } = emitterColour(index);
           const localized = states.get(id)?.belief?.fact.localized ?? false;
           const left = localized ? undefined : times.get(id);
@@ -71,7 +75,7 @@ export function EmitterList() {
                     {emitterName(emitters, id)}
                     <PlaceInOrder emitters={emitters} id={id} standsBack={back.has(id)} />
                   </span>
-                  <small>{t("emitters.mhz", { mhz: Number((frequency_hz / 1e6).toFixed(4)) })}</small>
+                  <small>{t("emitters.mhz", { mhz: Number((emitters[index]!.frequency_hz / 1e6).toFixed(4)) })}</small>
                 </span>
                 <span class="emitter-state">
                   {stateWords(states.get(id))}
