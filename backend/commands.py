@@ -14,7 +14,7 @@ from pydantic import Field
 
 from backend.permissions import Role
 from backend.reasons import Reason
-from backend.spec import Id, Model, Place, SearchArea
+from backend.spec import MOST_EMITTERS, Id, Model, Place, Priority, SearchArea
 
 
 class CraftCommand(Model):
@@ -126,6 +126,15 @@ class MuteSource(Model):
     """In the operator's own words."""
 
 
+class SetPriorities(Model):
+    """The order of importance as a whole: 1 is looked for first, equal ones are alike, what is not named comes last. It
+    steers the choice of the next place; no hold is needed. Said again, an emitter that stands back because the others
+    waited for it for too long comes forward."""
+
+    kind: Literal["set_priorities"] = "set_priorities"
+    priorities: dict[Id, Priority] = Field(max_length=MOST_EMITTERS)
+
+
 class AcknowledgeAlert(Model):
     """Somebody has seen it; it stays open until its cause is gone."""
 
@@ -164,7 +173,7 @@ class ReleaseControl(Model):
 
 
 ForCraft = Start | Hold | Resume | Return | Land | Abort | KeepHolding | Override | Accept | Veto | SetAutomatic
-ForSearch = ChangeArea | ExcludeBearing | IncludeBearing | MuteSource | AcknowledgeAlert
+ForSearch = ChangeArea | ExcludeBearing | IncludeBearing | MuteSource | SetPriorities | AcknowledgeAlert
 ForControl = TakeControl | AskControl | GiveControl | KeepControl | ReleaseControl
 Command = Annotated[ForCraft | ForSearch | ForControl, Field(discriminator="kind")]
 

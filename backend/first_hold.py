@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # loaded while the vehicle is listened for
 log = logging.getLogger("crossfix")
 
 ANSWERS_S = 5.0
-FORMS = (2, 3, 4)
+FORMS = (2, 3, 4, 5)
 """Of the rows that are read here; see backend.store.upgrade."""
 
 

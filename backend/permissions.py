@@ -195,6 +195,7 @@ COMMANDS: Mapping[str, CommandNeed] = {
     "exclude_bearing": STEERS,
     "include_bearing": STEERS,
     "mute_source": STEERS,
+    "set_priorities": STEERS,
     "take_control": LEASE,
     "ask_control": LEASE,
     "give_control": LEASE,

@@ -6,6 +6,7 @@ Defaults: the field system of spec section 8.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, FailFast, Field, model_validator
@@ -119,9 +120,14 @@ class MovementSpec(Model):
     speed_m_s: float = Field(default=0.2, ge=0.01, le=5, allow_inf_nan=False)
 
 
+MOST_EMITTERS = 32
+Priority = Annotated[int, Field(ge=1, le=MOST_EMITTERS)]
+"""In the order of importance: 1 is looked for first; equal ones are alike."""
+
+
 class EmitterSpec(Model):
     """What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
-    "pulsed" only."""
+    "pulsed" only. priority None: after all that have one; where none has, all are alike."""
 
     emitter_id: Id = FIRST_EMITTER
     frequency_hz: Positive = 868_300_000.0
@@ -133,6 +139,7 @@ class EmitterSpec(Model):
     pulse_jitter_s: float = Field(default=0.03, ge=0, le=5, allow_inf_nan=False)
     prior: PriorSpec = Field(default_factory=UniformPriorSpec)
     movement: MovementSpec = Field(default_factory=MovementSpec)
+    priority: Priority | None = None
 
     @model_validator(mode="after")
     def pulses_have_pauses(self) -> EmitterSpec:
@@ -306,11 +313,9 @@ class SearchArea(Model):
     no_fly: list[Area]
 
 
-MOST_EMITTERS = 32
-
-
 class MissionSpec(Model):
-    """Everything needed to search; frozen when the mission starts, but for the search area (in hold)."""
+    """Everything needed to search; frozen when the mission starts, but for the search area (in hold) and the order of
+    importance."""
 
     name: str = Field(min_length=1, max_length=120)
     area: Area
@@ -348,6 +353,22 @@ class MissionSpec(Model):
     def having_learned(self, learned: LearnedErrors | None) -> MissionSpec:
         """The same mission with another knowledge of its bearings' errors."""
         return self.model_copy(update={"sensor": self.sensor.model_copy(update={"learned": learned})})
+
+    def in_order(self, priorities: Mapping[str, int]) -> MissionSpec:
+        """The same mission with another order of importance: by emitter id; those not named have no priority."""
+        emitters = [one.model_copy(update={"priority": priorities.get(one.emitter_id)}) for one in self.emitters]
+        return self.model_copy(update={"emitters": emitters})
+
+    def name_of(self, emitter_id: str) -> str:
+        """Its label; with its number when another one has the same. Raises KeyError for one that is not looked for."""
+        found = self.emitter(emitter_id)
+        alike = sum(one.label == found.label for one in self.emitters) > 1
+        return f"{found.label} {self.emitters.index(found) + 1}" if alike else found.label or emitter_id
+
+    @property
+    def priorities(self) -> dict[str, int]:
+        """Of the emitters that have one, by id."""
+        return {one.emitter_id: one.priority for one in self.emitters if one.priority is not None}
 
     def searching(self, where: SearchArea) -> MissionSpec:
         """The same mission elsewhere."""

@@ -236,6 +236,7 @@ class Decision:
 
     reason: why this place. candidates: empty for policies that compare none.
     times: (n,) s, sampled times until localization by way of the chosen action (empty when not sampled).
+    each: (E, n) s, of several emitters those of each, in the order in which they were asked for; times: of the last.
     rollouts: sample paths used.
     """
 
@@ -244,6 +245,7 @@ class Decision:
     reason: ChoiceReason
     candidates: tuple[Candidate, ...] = ()
     times: FloatArray = field(default_factory=lambda: np.empty(0))
+    each: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     rollouts: int = 0
 
 

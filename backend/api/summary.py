@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from backend.events import Recorded
 from backend.ports import TrackPoint
-from backend.search.state import EmitterState, SearchState, evolve
+from backend.search.emitter import EmitterState
+from backend.search.state import SearchState, evolve
 from backend.store.digest import EPOCH, MissionDigest
 from backend.store.entries import SweepEntry
 from backend.store.retention import DELETED_DAYS
@@ -22,6 +23,7 @@ DETAIL_KINDS = (
     "mission_drafted",
     "mission_edited",
     "area_changed",
+    "priorities_changed",
     "preflight_checked",
     "mission_started",
     "bearing_measured",

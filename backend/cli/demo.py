@@ -46,14 +46,20 @@ def movement(kind: str | None, pace: float) -> MovementSpec:
     raise ValueError(f"--moves {kind!r} is not known: choose one of {', '.join(GAITS)}")
 
 
-def sought(first: EmitterSpec, count: int, moving: MovementSpec | None = None) -> list[EmitterSpec]:
-    """Emitters like the first, each at a frequency of its own."""
+def sought(
+    first: EmitterSpec, count: int, moving: MovementSpec | None = None, most_important: int | None = None
+) -> list[EmitterSpec]:
+    """Emitters like the first, each at a frequency of its own. most_important: the number of the one to look for first,
+    None: all are alike. Raises ValueError for a number that none has."""
+    if most_important is not None and most_important > count:
+        raise ValueError(f"--first {most_important}: there are {count} emitters; name one of them, or raise --emitters")
     return [
         first.model_copy(
             update={
                 "emitter_id": f"emitter-{number}",
                 "frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ,
                 "movement": moving or MovementSpec(),
+                "priority": 1 if number == most_important else None,
             }
         )
         for number in range(1, count + 1)
@@ -96,6 +102,9 @@ def demo(
     emitters: Annotated[
         int, typer.Option(min=1, max=MOST_EMITTERS, help="How many emitters to look for, each at its own frequency.")
     ] = 1,
+    most_important: Annotated[
+        int | None, typer.Option("--first", min=1, help="With --emitters: the number of the one to look for first.")
+    ] = None,
     moves: Annotated[
         str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")
     ] = None,
@@ -130,7 +139,7 @@ def demo(
     except ValueError as error:
         stop(error)
     try:
-        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace))
+        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace), most_important)
         result = asyncio.run(_demo(settings, headless, json_, mend_failsafes, tag, looked_for))
     except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
         stop(error)

@@ -16,6 +16,7 @@ from backend.events import (
     Event,
     MissionDrafted,
     MissionEnded,
+    MissionStarted,
     PlanChosen,
     Recorded,
     SweepRejected,
@@ -105,11 +106,22 @@ def _graded(log: MissionLog, emitter: EmitterSpec, truth_at: TruthAt) -> dict[st
     return {
         "emitter_id": emitter.emitter_id,
         "frequency_hz": emitter.frequency_hz,
+        "priority": emitter.priority,
+        "found_s": _found_s(log, beliefs),
         "localized": last is not None and last.localized,
         "error_m": error_m,
         "expected_rmse_m": None if estimate is None else estimate.expected_rmse_m,
         "in_c95": in_c95,
     }
+
+
+def _found_s(log: MissionLog, beliefs: Sequence[tuple[BeliefUpdated, float]]) -> float | None:
+    """From the start until the claim that stands in the end was made; None without one."""
+    began_s = next((r.at_utc.timestamp() for r in log.recorded if isinstance(r.event, MissionStarted)), None)
+    since_s: float | None = None
+    for belief, at_s in beliefs:
+        since_s = (at_s if since_s is None else since_s) if belief.localized else None
+    return None if began_s is None or since_s is None else since_s - began_s
 
 
 def _bearing_error(measured: BearingMeasured, truth: Place) -> float:

@@ -35,7 +35,8 @@ def truth(
             help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
             "walls, walls_bias5, squinted, uneven, foreign, creeping, jumping or two_sources: how the bearings are "
             "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: four or eight tags in the field "
-            "scenario, each a claim (tags_4_bias5, tags_8_bias5: with a wrong compass, one for all tags); moving_0.1, "
+            "scenario, each a claim (tags_4_bias5, tags_8_bias5: with a wrong compass, one for all tags; tags_4_first, "
+            "tags_8_first: the first tag is the most important, in the same worlds); moving_0.1, "
             "moving_0.2 or moving_0.4: an emitter that walks or drifts at that speed, in m/s."
         ),
     ],
@@ -165,6 +166,7 @@ def sentence(found: Truth) -> str:
         return f"{found.row}: none of {found.missions} missions said localized"
     known = "" if found.prior == UNKNOWN else f", {found.prior} known before"
     known += ", shared by all tags" if found.shared else ""
+    known += "" if found.first_s is None else f", the first tag after {found.first_s:.0f} s"
     known += "" if found.planner == "fisher" else f", planned by {found.planner}"
     return (
         f"{found.row}, {found.model} errors{known}: {found.missions} missions, "

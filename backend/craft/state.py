@@ -39,6 +39,7 @@ from backend.events import (
     PlaceRefused,
     PlanChosen,
     PlanVetoed,
+    PrioritiesChanged,
     ServerRestarted,
     SourceMuteChanged,
     SweepRejected,
@@ -226,7 +227,9 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
             return replace(state, chosen=None, accepted=False, avoid=())
-        case BearingExcluded() | BearingIncluded() | SourceMuteChanged() if state.phase == "waiting":
+        case BearingExcluded() | BearingIncluded() | SourceMuteChanged() | PrioritiesChanged() if (
+            state.phase == "waiting"
+        ):
             return replace(state, chosen=None)
         case _:
             return state

@@ -22,6 +22,7 @@ from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, 
 from backend.events import PlanChosen
 from backend.reasons import Reason, carried, safety
 from backend.search.closed_by_ground import closed_by_ground
+from backend.search.importance import come_first
 from backend.search.planning import next_place, next_place_together, way_to
 from backend.search.sector import TurnPlan, expected_here, must_be_whole, planned_turn, whole_turn
 from backend.search.state import SearchState
@@ -192,16 +193,22 @@ class Work:
         effect: effects.PlanNext,
         closed: BaseGeometry | None = None,
     ) -> PlanChosen:
-        """For all emitters that are not localized; each turn listens to all of them. closed: m ENU."""
+        """For all emitters that are not localized, the most important first; each turn listens to all of them. closed:
+        m ENU."""
         number, threads, craft_id = effect.place_number, self.equipment.threads, self.equipment.craft_id
         sought = search.sought
+        ranks = {emitter.emitter_id: search.rank(emitter.emitter_id) for emitter in sought}
         if len(sought) > 1 and self.task.mission.planner.method == "rollout":
             wanted = [(self.task.together.about(search, e.emitter_id).without(closed), e.bearings) for e in sought]
-            return next_place_together(wanted, platform, number, effect.avoid, threads, craft_id)
-        emitter = next(iter(sought))
-        task = self.task.together.about(search, emitter.emitter_id).without(closed)
-        belief = task.planning_belief(task.planner_bearings(emitter.bearings))
-        return next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)
+            choice = next_place_together(
+                wanted, platform, number, effect.avoid, threads, craft_id, list(ranks.values())
+            )
+        else:
+            emitter = sought[0]
+            task = self.task.together.about(search, emitter.emitter_id).without(closed)
+            belief = task.planning_belief(task.planner_bearings(emitter.bearings))
+            choice = next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)
+        return choice.model_copy(update={"first": come_first(ranks), "set_back": search.set_back})
 
     def vetoes_against(self, place: Place, way: Sequence[tuple[float, float]] | None = None) -> tuple[Reason, ...]:
         """What safety has against flying to a place from where the vehicle is now. way: points in between (m ENU),

@@ -66,6 +66,7 @@ from backend.events.mission import (
     MissionEnded,
     MissionPhase,
     Outcome,
+    PrioritiesChanged,
     ServerRestarted,
 )
 from backend.events.nets import NetsHung, NetsNoted, NetsPutBack
@@ -84,7 +85,7 @@ from backend.events.orders import (
     ResumeOrdered,
     ReturnOrdered,
 )
-from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
+from backend.events.plans import CandidateFact, ForecastFact, PlanChosen, PlanVetoed, SetBackFact
 from backend.events.review import (
     MissionBroughtIn,
     MissionDeleted,
@@ -130,6 +131,7 @@ __all__ = [
     "Event",
     "Fact",
     "FlightStarted",
+    "ForecastFact",
     "GroundFact",
     "HeardOnTheWay",
     "HoldOrdered",
@@ -168,6 +170,7 @@ __all__ = [
     "PlanChosen",
     "PlanVetoed",
     "PreflightChecked",
+    "PrioritiesChanged",
     "Recorded",
     "RecordingImported",
     "ResumeOrdered",
@@ -175,6 +178,7 @@ __all__ = [
     "ReviewFact",
     "SafetyVetoed",
     "ServerRestarted",
+    "SetBackFact",
     "SilenceFact",
     "SourceErrorsFact",
     "SourceMuteChanged",
@@ -190,7 +194,7 @@ __all__ = [
     "VariantKept",
 ]
 
-FORM = 4
+FORM = 5
 """Of these facts, as they are stored and exported; a field more is a form more. See backend.store.upgrade."""
 
 ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
@@ -199,6 +203,7 @@ Event = Annotated[
     MissionDrafted
     | MissionEdited
     | AreaChanged
+    | PrioritiesChanged
     | PreflightChecked
     | AntennaChecked
     | MissionStarted

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator
 from backend.events.craft import Phase
 from backend.events.fact import Fact
 from backend.reasons import Reason
-from backend.spec import LONGEST_S, MissionSpec, SearchArea
+from backend.spec import LONGEST_S, Id, MissionSpec, Priority, SearchArea
 
 MissionPhase = Literal["draft", "ready", "searching", "done", "aborted", "failed"] | Phase
 """A mission in one word: what its craft does while one flies, else the stage of its search."""
@@ -54,6 +54,15 @@ class AreaChanged(Fact):
 
     kind: Literal["area_changed"] = "area_changed"
     search: SearchArea
+    by: str
+
+
+class PrioritiesChanged(Fact):
+    """From here on places are chosen in this order of importance; emitters that are not named come last. What the
+    others waited for before counts no more."""
+
+    kind: Literal["priorities_changed"] = "priorities_changed"
+    priorities: dict[Id, Priority]
     by: str
 
 

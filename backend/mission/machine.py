@@ -23,6 +23,7 @@ from backend.commands import (
     MuteSource,
     ReleaseControl,
     Return,
+    SetPriorities,
     Start,
     TakeControl,
     order_of,
@@ -46,6 +47,7 @@ from backend.events import (
     Event,
     HeardOnTheWay,
     MissionStarted,
+    PrioritiesChanged,
     ServerRestarted,
     SourceMuteChanged,
     SweepRejected,
@@ -138,7 +140,7 @@ def _outruns_beliefs(fact: Event) -> bool:
 def _changes_the_search(fact: Event) -> bool:
     """A craft's own bearing is part of what it is doing already."""
     foreign = isinstance(fact, BearingMeasured) and not isinstance(fact.source, CraftSource)
-    return foreign or isinstance(fact, BeliefUpdated | Recount)
+    return foreign or isinstance(fact, BeliefUpdated | Recount | PrioritiesChanged)
 
 
 def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionState, tuple[Effect, ...]]:
@@ -199,7 +201,7 @@ def _carry_out(now: _Transition, given: Commanded) -> Reason | None:
             return None
         case AcknowledgeAlert(alert_id=alert_id) if alert_id not in open_alert_ids(state):
             return refusals.NoSuchAlert()
-        case ChangeArea() | ExcludeBearing() | IncludeBearing() | MuteSource() | AcknowledgeAlert():
+        case ChangeArea() | ExcludeBearing() | IncludeBearing() | MuteSource() | SetPriorities() | AcknowledgeAlert():
             held = all(craft.phase == "hold" and not craft.taken_over for craft in state.engaged)
             return now.to_search(SearchOrdered(given.author.name, command, given.search.objections, held))
         case _:

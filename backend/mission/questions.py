@@ -62,14 +62,15 @@ class Questions:
                 return craft.work.vetoes_against(where, way)
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
-        emitters = search.wanted or search.sought[:1]
+        emitters = search.sought if search.wanted else search.sought[:1]
         wanted = [(task.together.about(search, one.emitter_id), one.bearings) for one in emitters]
+        ranks = [search.rank(one.emitter_id) for one in emitters]
         found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
         if runner is not None and found.mean_s is not None:
             runner.told.keep(search, place, Foretold(found.mean_s, found.p90_s, found.rollouts))
         if instead_of is None:
             return found, None
-        return found, await asyncio.to_thread(compare, wanted, start, place, instead_of)
+        return found, await asyncio.to_thread(compare, wanted, start, place, instead_of, ranks)
 
     async def advise(
         self, mission_id: str, here: Place, going: Going, emitter_id: str | None

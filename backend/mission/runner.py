@@ -189,7 +189,9 @@ class MissionRunner:
 
     def _adopt(self) -> None:
         task = self._next_task
-        if task is None or task.mission != self._state.search.mission:
+        # the order of importance may have changed while the task was made; the task does not know it
+        mission = self._state.search.mission
+        if task is None or task.mission.in_order(mission.priorities) != mission:
             raise RuntimeError("the search area changed without its task")
         self.task = task
         self._beliefs.adopt(task)

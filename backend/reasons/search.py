@@ -255,6 +255,42 @@ class QualityTooLow:
     english: ClassVar[Words] = Words("The quality {quality:2} is below {wanted:2}.", "Take the sweep again.")
 
 
+@dataclass(frozen=True, slots=True)
+class UnheardForLong:
+    """Of an emitter that would come first. places: in a row where it was not heard."""
+
+    places: int
+    code: Literal["unheard_for_long"] = "unheard_for_long"
+    english: ClassVar[Words] = Words(
+        "It was not heard from the last {places|place|places}; the others come first until it is heard.",
+        "Set the order again to look for it first all the same.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class UnclearForLong:
+    """Of an emitter that would come first. places: with a turn since its bearings contradict each other."""
+
+    places: int
+    code: Literal["unclear_for_long"] = "unclear_for_long"
+    english: ClassVar[Words] = Words(
+        "Its bearings have contradicted each other for {places|place|places}; the others come first until they agree.",
+        "Look at its bearings and leave out a wrong one, or set the order again.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FirstForLong:
+    """Of an emitter that would come first. places: chosen for it first, without localizing it."""
+
+    places: int
+    code: Literal["first_for_long"] = "first_for_long"
+    english: ClassVar[Words] = Words(
+        "{places|place was|places were} chosen for it first and it is not localized; the others come first now.",
+        "Set the order again to look for it first all the same.",
+    )
+
+
 SearchReason = (
     AreaEmpty
     | TooFewCorners
@@ -280,4 +316,7 @@ SearchReason = (
     | OtherFrequency
     | SweepIncomplete
     | QualityTooLow
+    | UnheardForLong
+    | UnclearForLong
+    | FirstForLong
 )

@@ -19,8 +19,8 @@ from backend.mission.state import MissionState, evolve
 from backend.ports import TrackPoint
 from backend.scene.relief import Relief
 from backend.search import area as areas
+from backend.search.emitter import EmitterState
 from backend.search.errors import MissionInputError
-from backend.search.state import EmitterState
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -123,9 +123,9 @@ class Story:
 
     @property
     def emitter(self) -> EmitterState:
-        """The one whose belief is shown: the first that is not localized, else the first."""
+        """The one whose belief is shown: the most important that is not localized, else the first."""
         search = self.state.search
-        return next(iter(search.wanted or search.emitters.values()))
+        return search.sought[0] if search.wanted else next(iter(search.emitters.values()))
 
 
 def read_story(recorded: Sequence[Recorded], upto_seq: int | None = None) -> Story | None:

@@ -80,11 +80,16 @@ def forecast(
 
 
 def compare(
-    wanted: Sequence[tuple[Localization, Sequence[BearingMeasured]]], platform: Place, place: Place, other: Place
+    wanted: Sequence[tuple[Localization, Sequence[BearingMeasured]]],
+    platform: Place,
+    place: Place,
+    other: Place,
+    ranks: Sequence[int] = (),
 ) -> Comparison | None:
     """A place beside another by the measure of the mission's planner; None when one of them cannot be reached.
 
-    wanted: the emitters that are looked for, each with its counted bearings.
+    wanted: the emitters that are looked for, each with its counted bearings. ranks: in their order of importance, none:
+    they are alike.
     """
     (task, measured), *more = wanted
     start, here, there = (task.frame.to_enu(p) for p in (platform, place, other))
@@ -94,7 +99,8 @@ def compare(
     together = bool(more) and options.method == "rollout"
     try:
         if together:
-            found = difference_together([Wanted(p, b) for p, b in problems], start, here, there, options)
+            asked = [Wanted(p, b, rank) for (p, b), rank in zip(problems, ranks or [0] * len(problems), strict=True)]
+            found = difference_together(asked, start, here, there, options)
         else:
             problem, belief = problems[0]
             bearings = task.planner_bearings(measured)

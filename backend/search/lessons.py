@@ -15,9 +15,10 @@ import numpy as np
 
 from backend.events import AntennaChecked, BearingMeasured, CraftSource, TruthNoted
 from backend.ports import Lesson, Said
+from backend.search.emitter import EmitterState
 from backend.search.localization import Localization, source_name
 from backend.search.source_priors import learned_errors, unknown_errors
-from backend.search.state import EmitterState, SearchState
+from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.spec import LearnedErrors, MissionSpec, SensorSpec
 from hardware.reasons.antenna import AntennaAgrees

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, assert_never
 
-from backend.commands import AcknowledgeAlert, ChangeArea, ExcludeBearing, IncludeBearing, MuteSource
+from backend.commands import AcknowledgeAlert, ChangeArea, ExcludeBearing, IncludeBearing, MuteSource, SetPriorities
 from backend.events import (
     AlertAcknowledged,
     AlertCleared,
@@ -26,6 +26,7 @@ from backend.events import (
     MissionEnded,
     PersonSource,
     PreflightChecked,
+    PrioritiesChanged,
     ReviewFact,
     SourceErrorsFact,
     SourceMuteChanged,
@@ -174,6 +175,8 @@ def _ordered(step: SearchStep, given: SearchOrdered) -> None:
             _include(step, given, given.command)
         case MuteSource():
             _mute(step, given, given.command)
+        case SetPriorities():
+            _put_in_order(step, given, given.command)
         case AcknowledgeAlert(alert_id=alert_id):
             step.record(AlertAcknowledged(alert_id=alert_id, by=given.by))
         case _:
@@ -249,6 +252,18 @@ def _mute(step: SearchStep, given: SearchOrdered, command: MuteSource) -> None:
         raise Refused(refusals.MissionOver())
     step.record(SourceMuteChanged(source=source, muted=command.muted, by=given.by, reason=command.reason))
     update_stale_beliefs(step)
+
+
+def _put_in_order(step: SearchStep, given: SearchOrdered, command: SetPriorities) -> None:
+    """Before the start the order is edited like the rest of the specification."""
+    if step.state.stage in ("draft", "ready"):
+        raise Refused(refusals.NotStarted())
+    if step.state.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    for name in command.priorities:
+        if name not in step.state.emitters:
+            raise Refused(refusals.NoSuchEmitter(name))
+    step.record(PrioritiesChanged(priorities=command.priorities, by=given.by))
 
 
 def _over(step: SearchStep, given: SearchOver) -> None:

@@ -46,8 +46,8 @@ def task_or_reason(state: SearchState, area: SearchArea, terrain: Terrain | None
 
 
 def outlook(state: SearchState, task: SearchTask, platform: Place, threads: int) -> Outlook:
-    """Of the first emitter that is not localized, else the first."""
-    emitter = (*state.wanted, *state.emitters.values())[0]
+    """Of the most important emitter that is not localized, else the first."""
+    emitter = state.sought[0] if state.wanted else next(iter(state.emitters.values()))
     localization = task.together.about(state, emitter.emitter_id)
     belief, grid = localization.belief_fact(emitter.bearings)
     if belief.localized:

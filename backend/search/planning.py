@@ -13,7 +13,7 @@ from statistics import fmean, geometric_mean
 
 import numpy as np
 
-from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, CraftSource, PlanChosen
+from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, CraftSource, ForecastFact, PlanChosen
 from backend.reasons import Reason, carried
 from backend.search.localization import Localization, own_sigma_deg, source_name
 from backend.spec import MissionSpec
@@ -61,28 +61,40 @@ def next_place_together(
     avoid: Sequence[Place],
     threads: int,
     craft_id: str = FIRST_CRAFT,
+    ranks: Sequence[int] = (),
 ) -> PlanChosen:
     """The choice for several emitters (each with its counted bearings) that one turn hears at once; it is to tell most
-    of none of them. Raises PlannerError when no place is allowed or reachable."""
+    of none of them. ranks: in their order of importance, none: they are alike. Raises PlannerError when no place is
+    allowed or reachable."""
     began = time.perf_counter()
     task = wanted[0][0]
     decision = plan_several(
-        [_still_wanted(one, measured) for one, measured in wanted],
+        [_still_wanted(*one, rank) for one, rank in zip(wanted, ranks or [0] * len(wanted), strict=True)],
         platform,
         task.mission.planner.options,
         threads=threads,
         without=[task.frame.to_enu(place) for place in avoid],
     )
-    return _plan_fact(task, decision, place_number, craft_id, None, began)
+    forecasts = [
+        ForecastFact(emitter_id=one.emitter_id, expected_time_s=float(times.mean()))
+        for (one, _), times in zip(wanted, decision.each, strict=True)
+    ]
+    return _plan_fact(task, decision, place_number, craft_id, None, began, forecasts)
 
 
-def _still_wanted(task: Localization, measured: Sequence[BearingMeasured]) -> Wanted:
+def _still_wanted(task: Localization, measured: Sequence[BearingMeasured], rank: int) -> Wanted:
     belief = task.planning_belief(task.planner_bearings(measured))
-    return Wanted(to_plan(task, measured, belief), belief)
+    return Wanted(to_plan(task, measured, belief), belief, rank, task.mission.name_of(task.emitter_id))
 
 
 def _plan_fact(
-    task: Localization, decision: Decision, place_number: int, craft_id: str, emitter_id: str | None, began: float
+    task: Localization,
+    decision: Decision,
+    place_number: int,
+    craft_id: str,
+    emitter_id: str | None,
+    began: float,
+    forecasts: Sequence[ForecastFact] = (),
 ) -> PlanChosen:
     """began: by time.perf_counter."""
     plan_ms = 1e3 * (time.perf_counter() - began)
@@ -101,6 +113,7 @@ def _plan_fact(
         candidates=candidate_facts(task, decision),
         rollouts=decision.rollouts,
         plan_ms=plan_ms,
+        forecasts=list(forecasts),
     )
 
 

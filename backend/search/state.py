@@ -29,13 +29,17 @@ from backend.events import (
     Outcome,
     PlanChosen,
     PreflightChecked,
+    PrioritiesChanged,
     ServerRestarted,
+    SetBackFact,
     SourceMuteChanged,
     SweepRejected,
     Topic,
     TruthNoted,
 )
 from backend.reasons import Reason
+from backend.search.emitter import EmitterState
+from backend.search.importance import Patience, rank_of, standing_back, waited
 from backend.spec import MissionSpec, Place
 
 Stage = Literal["draft", "ready", "open", "ended"]
@@ -52,84 +56,11 @@ class OpenAlert:
 
 
 @dataclass(frozen=True, slots=True)
-class EmitterState:
-    """What is known of one emitter.
-
-    claim, claimed_at_s: the last belief that said localized, and when (UTC epoch seconds): of an emitter that moves it
-    stands for its moment, whatever is believed later.
-
-    muted: sources whose bearings do not count, as those in `excluded` do not.
-
-    belief_current: this server computed `belief`; no bearing came or went since, of this emitter or of one that tells
-    of its source's errors, and the area is the same. folded_again: a server before a restart did, and the same bearings
-    are being folded again. localized_at_s: UTC epoch seconds at which the belief was first good enough, None when it is
-    not. truth: what was told last of where it really was; no belief about it depends on that. silences: turns that
-    heard nothing of it and tell something by that. ways: legs on which it was listened to, those that told nothing too.
-    """
-
-    emitter_id: str
-    measured: tuple[BearingMeasured, ...] = ()
-    excluded: frozenset[str] = frozenset()
-    muted: frozenset[BearingSource] = frozenset()
-    belief: BeliefUpdated | None = None
-    belief_current: bool = False
-    folded_again: bool = False
-    localized_at_s: float | None = None
-    claim: BeliefUpdated | None = None
-    claimed_at_s: float | None = None
-    truth: TruthNoted | None = None
-    silences: tuple[SweepRejected, ...] = ()
-    ways: tuple[HeardOnTheWay, ...] = ()
-
-    @property
-    def bearings(self) -> tuple[BearingMeasured, ...]:
-        """The bearings that count, in the order they were taken."""
-        return tuple(b for b in self.measured if self.counts(b))
-
-    def counts(self, bearing: BearingMeasured) -> bool:
-        """Neither it nor its source was left out."""
-        return bearing.bearing_id not in self.excluded and bearing.source not in self.muted
-
-    @property
-    def bearing_ids(self) -> tuple[str, ...]:
-        """Of those that count, in the order in which they are folded, of the turns that heard nothing, and of legs."""
-        beside = (*(one.sweep_id for one in self.unheard), *(leg.leg_id for leg in self.legs))
-        return (*(b.bearing_id for b in self.bearings), *beside)
-
-    @property
-    def unheard(self) -> tuple[SweepRejected, ...]:
-        """The turns that heard nothing of it and count, in their order."""
-        return tuple(one for one in self.silences if one.sweep_id not in self.excluded)
-
-    @property
-    def legs(self) -> tuple[HeardOnTheWay, ...]:
-        """Those that tell something and count, in their order."""
-        return tuple(
-            leg for leg in self.ways if leg.tells and leg.leg_id not in self.excluded and leg.source not in self.muted
-        )
-
-    @property
-    def localized(self) -> bool:
-        """Never by a belief that bearings or the area have outrun."""
-        return self.belief_current and self.belief is not None and self.belief.localized
-
-    @property
-    def found(self) -> bool:
-        """Localized; a restart of the server takes nothing from what its bearings say."""
-        return (self.belief_current or self.folded_again) and self.belief is not None and self.belief.localized
-
-    @property
-    def not_yet(self) -> tuple[Reason, ...]:
-        """What is missing for "localized"; nothing before the first belief."""
-        return () if self.belief is None else tuple(self.belief.not_yet)
-
-
-@dataclass(frozen=True, slots=True)
 class SearchState:
     """emitters: by id, in the specification's order. home: origin of the local frame, None until a craft started.
     ground: the terrain below, None while it is taken to be flat.
 
-    muted: sources whose bearings count for no emitter.
+    muted: sources whose bearings count for no emitter. patience: by emitter id.
 
     place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds. deleted: out of the
     list, to be restored for some days.
@@ -144,6 +75,7 @@ class SearchState:
     started_at_s: float | None = None
     emitters: Mapping[str, EmitterState] = field(default_factory=dict[str, EmitterState])
     muted: frozenset[BearingSource] = frozenset()
+    patience: Mapping[str, Patience] = field(default_factory=dict[str, Patience])
     place_number: int = 0
     open_alerts: tuple[OpenAlert, ...] = ()
     alerts_raised: int = 0
@@ -193,11 +125,22 @@ class SearchState:
 
     @property
     def sought(self) -> tuple[EmitterState, ...]:
-        """Whom the next place is for: the wanted, else those that are followed, else all."""
+        """Whom the next place is for, the most important first: the wanted, else those that are followed, else all."""
         if self.wanted or not self.follows:
-            return self.wanted or tuple(self.emitters.values())
-        moving = [e.emitter_id for e in self.mission.emitters if e.movement.kind != "still"]
-        return tuple(self.emitters[name] for name in moving)
+            sought = self.wanted or tuple(self.emitters.values())
+        else:
+            moving = [e.emitter_id for e in self.mission.emitters if e.movement.kind != "still"]
+            sought = tuple(self.emitters[name] for name in moving)
+        return tuple(sorted(sought, key=lambda emitter: self.rank(emitter.emitter_id)))
+
+    def rank(self, emitter_id: str) -> int:
+        """In the order of importance, the lower the sooner; equal ones are alike."""
+        return rank_of(self.spec, emitter_id, self.patience)
+
+    @property
+    def set_back(self) -> list[SetBackFact]:
+        """Those that are still looked for and would come first, but for the others' patience."""
+        return standing_back(self.mission, [one.emitter_id for one in self.sought], self.patience)
 
     @property
     def beliefs_current(self) -> bool:
@@ -262,12 +205,20 @@ class SearchState:
 
 def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
     """The state after one fact. `at_s`: UTC epoch seconds of the fact."""
+    evolved = _evolve(state, event, at_s)
+    patience = waited(state.patience, event)
+    return evolved if patience is state.patience else replace(evolved, patience=patience)
+
+
+def _evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
     match event:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return replace(_with_spec(state, spec), passed=False, antenna=None)
         case AreaChanged(search=search):
             changed = _with_spec(state, state.mission.searching(search))
             return _each(changed, lambda emitter: replace(emitter, localized_at_s=None, claim=None, claimed_at_s=None))
+        case PrioritiesChanged(priorities=priorities):
+            return replace(state, spec=state.mission.in_order(priorities))
         case PreflightChecked(passed=passed):
             return replace(state, passed=passed) if state.stage in ("draft", "ready") else state
         case AntennaChecked(check=check):

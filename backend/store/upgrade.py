@@ -2,7 +2,7 @@
 
 Each stored event says the form of its body. In form 1 a mission has one craft and one emitter without ids, a reason is
 a sentence, `draft`, `ready` and the ends of a mission are phases of the craft, and control is taken or released. Forms
-2 and 3 may lack fields that were added since, each of which has a default: read, it is whole. Form 4 has every field of
+2 to 4 may lack fields that were added since, each of which has a default: read, it is whole. Form 5 has every field of
 backend.events, so that its text is sent as it is stored. Pure; a body is the parsed JSON of one event.
 """
 
@@ -16,7 +16,7 @@ from backend.events import FIRST_CRAFT, FORM
 from backend.spec import FIRST_EMITTER
 
 FIRST_FORM = 1
-READ_AS_IT_STANDS = frozenset({2, 3, FORM})
+READ_AS_IT_STANDS = frozenset({2, 3, 4, FORM})
 
 Body = dict[str, Any]
 Imports = Mapping[str, str]

@@ -17,7 +17,9 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import pymap3d.vincenty
 
 from backend.events import BearingMeasured, BeliefUpdated, EstimateFact, Recorded
-from backend.search.state import EmitterState, SearchState, evolve
+from backend.search.emitter import EmitterState
+from backend.search.state import SearchState, evolve
+from backend.spec import EmitterSpec
 from backend.wire.export import Tracks
 
 SIGMAS_95 = 2.4477
@@ -56,20 +58,22 @@ def cot_events(recorded: Sequence[Recorded]) -> list[Element]:
     beliefs = {r.event.emitter_id: r.at_utc for r in recorded if isinstance(r.event, BeliefUpdated)}
     events: list[Element] = []
     for emitter in state.emitters.values():
-        label = state.mission.emitter(emitter.emitter_id).label
-        events += _events_of(f"{mission_id}/{emitter.emitter_id}", emitter, label, beliefs, times)
+        sought = state.mission.emitter(emitter.emitter_id)
+        events += _events_of(f"{mission_id}/{emitter.emitter_id}", emitter, sought, beliefs, times)
     return events
 
 
 def _events_of(
-    key: str, emitter: EmitterState, label: str, beliefs: Mapping[str, datetime], times: Mapping[str, datetime]
+    key: str, emitter: EmitterState, sought: EmitterSpec, beliefs: Mapping[str, datetime], times: Mapping[str, datetime]
 ) -> list[Element]:
     """key: what the events' ids are made from."""
-    belief = emitter.belief
+    belief, label = emitter.belief, sought.label
     events: list[Element] = []
     estimate = None if belief is None else belief.estimate
     if belief is not None and estimate is not None:
         words, at = "localized" if belief.localized else "not yet localized", beliefs[emitter.emitter_id]
+        if sought.priority is not None:
+            words += f", priority {sought.priority}"
         events.append(_emitter(key, estimate, at, f"{label}: {words}"))
         events.append(_ellipse(key, estimate, at, label))
     for number, fact in enumerate(emitter.bearings, start=1):

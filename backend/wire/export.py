@@ -14,7 +14,8 @@ import pymap3d.vincenty
 
 from backend.events import FORM, BearingMeasured, CraftSource, MissionStarted, Recorded, SweepStarted
 from backend.ports import TrackPoint
-from backend.search.state import EmitterState, SearchState, evolve
+from backend.search.emitter import EmitterState
+from backend.search.state import SearchState, evolve
 from backend.spec import Area, Place
 from backend.version import VERSION
 
@@ -145,7 +146,10 @@ def _emitter_features(
     state: SearchState, emitter: EmitterState, times_utc: Mapping[str, datetime]
 ) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
     belief, estimate = emitter.belief, emitter.belief.estimate if emitter.belief else None
-    several = {"emitter": state.mission.emitter(emitter.emitter_id).label} if len(state.emitters) > 1 else {}
+    sought = state.mission.emitter(emitter.emitter_id)
+    several: dict[str, Any] = {"emitter": sought.label} if len(state.emitters) > 1 else {}
+    if sought.priority is not None:
+        several["priority"] = sought.priority
     target = Place(lat=estimate.lat, lon=estimate.lon) if estimate else None
     for number, fact in enumerate(emitter.measured, start=1):
         properties = {

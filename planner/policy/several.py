@@ -4,7 +4,8 @@ The value of a first action a is the mean over the wanted emitters of each one's
 
     V(a) = 1 / E sum_e E[T_e(a)],
 
-each from its own belief by the base policy (planner.policy.rollout). The exact objective, the time until the last of
+each from its own belief by the base policy (planner.policy.rollout); those that are more important weigh more
+(planner.policy.importance). The exact objective, the time until the last of
 them, needs rollouts that carry all beliefs at once; its lower bound max_e T_e hangs on one unlucky emitter and chose
 worse in simulated missions than this sum did (docs/several-emitters.md).
 """
@@ -28,9 +29,17 @@ from planner.options import BasePolicy, PlannerOptions
 from planner.policy.actions import action_space, without_refused
 from planner.policy.dynamic_program import stands_on
 from planner.policy.fisher import first_best, fisher, gain_beside_bias, information_gain
+from planner.policy.importance import mean_time, weights_of
 from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, PROGRAM_HORIZON, SELECTIONS, TELLING_SHARE
 from planner.policy.simulation import HORIZON, Simulation, allowed_lattice, simulate
-from planner.reasons import BudgetTooSmall, EveryPlaceRefused, NoPlaceInReach, SoonestTogether
+from planner.reasons import (
+    BudgetTooSmall,
+    ChoiceReason,
+    EveryPlaceRefused,
+    NoPlaceInReach,
+    SoonestForFirst,
+    SoonestTogether,
+)
 from planner.sampling import deterministic_paths, random_paths
 from planner.selection.types import Selection, SelectionResult
 from planner.selection.uniform import uniform
@@ -40,10 +49,13 @@ from planner.types import BoolArray, Candidate, Decision, Estimate, FloatArray, 
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """An emitter still looked for. problem: the same area to fly in for all of them; sigma and threshold its own."""
+    """An emitter still looked for. problem: the same area to fly in for all of them; sigma and threshold its own. rank:
+    the lower, the more important (`planner.policy.importance`); equal ones are alike. name: as a reason calls it."""
 
     problem: Problem
     belief: GridBelief
+    rank: int = 0
+    name: str = ""
 
 
 FEW_CELLS = 48
@@ -120,11 +132,13 @@ class _Member:
 
 @dataclass(slots=True)
 class _Together:
-    """The `Sample` over all members: one path is a path of each of them. last: of each path, of the last one found."""
+    """The `Sample` over all members: one path is a path of each of them. weights: (E,), None of members that are alike.
+    each: of each action, blocks (E, paths) of the members' times."""
 
     members: Sequence[_Member]
     pool: ThreadPoolExecutor
-    last: dict[int, list[FloatArray]] = field(default_factory=dict[int, list[FloatArray]])
+    weights: FloatArray | None
+    each: dict[int, list[FloatArray]] = field(default_factory=dict[int, list[FloatArray]])
 
     @property
     def used(self) -> int:
@@ -132,16 +146,20 @@ class _Together:
         return sum(member.used for member in self.members)
 
     def sample(self, actions: IntArray, path_from: int, path_to: int) -> FloatArray:
-        """(k, path_to - path_from) s: the mean time of the members."""
+        """(k, path_to - path_from) s: the mean time of the members, weighed by their importance."""
         chosen = np.asarray(actions, dtype=np.int64)
 
         def of(member: _Member) -> FloatArray:
             return member.costs(chosen, path_from, path_to)
 
         costs = np.stack(list(self.pool.map(of, self.members)))
-        for index, row in zip(chosen, costs.max(axis=0), strict=True):
-            self.last.setdefault(int(index), []).append(row)
-        return costs.mean(axis=0)
+        for row, index in enumerate(chosen):
+            self.each.setdefault(int(index), []).append(costs[:, row])
+        return mean_time(costs, self.weights)
+
+    def times(self, action: int) -> FloatArray:
+        """(E, paths) s of every member by way of the action."""
+        return np.concatenate(self.each[action], axis=1)
 
 
 def plan_several(
@@ -177,20 +195,21 @@ def plan_several(
         count = 2 ** int(np.log2(budget // len(places)))
         budget = count * len(places)
     near = standoff_among(wanted[0].problem, len(places), len(wanted))
+    weights = weights_of([one.rank for one in wanted])
     members = [
         _member(one, simulation, places, _detour(one, gain, places), rng, count, near, tells)
         for one, simulation, gain, rng, tells in zip(copies, simulations, gains, chances, telling, strict=True)
     ]
     with ThreadPoolExecutor(threads) as pool:
-        together = _Together(members, pool)
+        together = _Together(members, pool, weights)
         least = members[0].actions.costs
         result = _selection(options, budget, least)(together.sample, len(places), budget, chances[0])
         last = together
         if any(simulation.rules.horizon < HORIZON for simulation in simulations):
-            last = _Together([member.to_the_end() for member in members], pool)
+            last = _Together([member.to_the_end() for member in members], pool, weights)
             last.sample(np.array([result.best]), 0, FORECAST_PATHS)
     rollouts = together.used + (0 if last is together else last.used)
-    return _decision(places, result, len(members), np.concatenate(last.last[result.best]), rollouts)
+    return _decision(places, result, wanted, last.times(result.best), rollouts)
 
 
 def times_together(
@@ -200,7 +219,8 @@ def times_together(
     options: PlannerOptions,
     paths: int,
 ) -> FloatArray:
-    """(k, paths) s: the mean of the emitters' times by way of each of the places (k, 2), m, on the same sample paths.
+    """(k, paths) s: the emitters' mean time, weighed by their importance, by way of each of the places (k, 2), m, on
+    the same sample paths.
 
     infinite by way of a place without a way to it.
     """
@@ -214,7 +234,8 @@ def times_together(
         telling = telling_beside_bias(one.problem, one.belief, places)
         members.append(_member(one, simulation, places, (choice.x, choice.y), rng, 0, near, telling))
     chosen = np.arange(len(places))
-    return np.stack([member.costs(chosen, 0, paths) for member in members]).mean(axis=0)
+    costs = np.stack([member.costs(chosen, 0, paths) for member in members])
+    return mean_time(costs, weights_of([one.rank for one in wanted]))
 
 
 def _following(problem: Problem) -> FloatArray | None:
@@ -344,7 +365,10 @@ def _selection(options: PlannerOptions, budget: int, least: FloatArray) -> Selec
     return partial(uniform, least=least, stride=max(1, budget // len(least) // MOST_LOOKS))
 
 
-def _decision(places: FloatArray, result: SelectionResult, emitters: int, times: FloatArray, rollouts: int) -> Decision:
+def _decision(
+    places: FloatArray, result: SelectionResult, wanted: Sequence[Wanted], each: FloatArray, rollouts: int
+) -> Decision:
+    """each: (E, paths) s of every emitter by way of the best place."""
     best = result.best
     tried = int(np.isfinite(result.means).sum())
     candidates = tuple(
@@ -353,12 +377,18 @@ def _decision(places: FloatArray, result: SelectionResult, emitters: int, times:
             places, result.means, result.std_errors, result.counts, result.dropped_in_round, strict=True
         )
     )
-    reason = SoonestTogether(float(result.means[best]), emitters, tried)
+    reason: ChoiceReason = SoonestTogether(float(result.means[best]), len(each), tried)
+    ranks = np.array([one.rank for one in wanted])
+    first = ranks == ranks.min()
+    if not first.all():
+        names = tuple(one.name for one in wanted if one.rank == ranks.min())
+        reason = SoonestForFirst(names, float(each[first].mean()), int((~first).sum()), tried)
     return Decision(
         x=float(places[best, 0]),
         y=float(places[best, 1]),
         reason=reason,
         candidates=candidates,
-        times=times,
+        times=each.max(axis=0),
+        each=each,
         rollouts=rollouts,
     )

@@ -15,6 +15,7 @@ from planner.reasons.choice import (
     QuickestPlace,
     QuickestPlaceFound,
     RoutePlanner,
+    SoonestForFirst,
     SoonestTogether,
 )
 from planner.reasons.not_yet import (
@@ -92,6 +93,7 @@ __all__ = [
     "RefusalReason",
     "RoutePlanner",
     "RuleReason",
+    "SoonestForFirst",
     "SoonestTogether",
     "TellsLittleOfBias",
     "TooFewPlaces",

@@ -67,6 +67,23 @@ class SoonestTogether:
 
 
 @dataclass(frozen=True, slots=True)
+class SoonestForFirst:
+    """Of several emitters, for those that come first. first_time_s: until each of those is localized, on average, if
+    each were flown for by itself from there on. others: how many more are still looked for."""
+
+    names: tuple[str, ...]
+    first_time_s: float
+    others: int
+    places: int
+    code: Literal["soonest_for_first"] = "soonest_for_first"
+
+    english: ClassVar[Words] = Words(
+        "For {names} first: localized in about {first_time_s} by way of this place, of {places|place|places} tried. "
+        "{others|other emitter decides|other emitters decide} only between places that are as good for that."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class QuickestPlaceFound:
     """By a search over a continuous action space."""
 
@@ -159,6 +176,7 @@ ChoiceReason = (
     | LongestLead
     | OnlyPlace
     | SoonestTogether
+    | SoonestForFirst
     | QuickestPlaceFound
     | PlannedMeanwhile
     | MostInformation

@@ -26,8 +26,11 @@ from planner.study.scenarios import Scenario, scenario
 from planner.study.truth import Claim, Model, bearing_of, claim_at, folded, prior_of
 from planner.types import Bearing, FloatArray, LocalizationRule
 
-TAGS = {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8}
+TAGS = {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8, "tags_4_first": 4, "tags_8_first": 8}
 """Rows by name: how many tags."""
+FIRST = ("tags_4_first", "tags_8_first")
+"""Rows in which the first tag is more important than the others, which are alike; worlds and luck are those of the row
+without."""
 BIAS_SD = {"tags_4_bias5": float(np.deg2rad(5.3)), "tags_8_bias5": float(np.deg2rad(5.3))}
 """Of the compass, by row: one angle for all bearings of all tags in a mission. In the other rows it is right."""
 MOST_BEARINGS = 40
@@ -44,6 +47,7 @@ class _Tag:
     alone: GridBelief
     belief: GridBelief
     bearings: list[Bearing]
+    rank: int = 0
     localized: bool = False
     claim: Claim | None = None
 
@@ -73,6 +77,7 @@ def tags_missions(
             shared=shared,
             bias_sd=BIAS_SD.get(row, 0.0),
             prior=known,
+            first=row in FIRST,
         )
 
 
@@ -86,16 +91,17 @@ def fly_tags(
     shared: bool = False,
     bias_sd: float = 0.0,
     prior: ErrorPrior | None = None,
+    first: bool = False,
 ) -> list[Claim]:
     """One mission from the scenario's place, its first bearing taken there. bias_sd: rad, of the compass, which hears
-    all tags. prior: of the joint model, as it is."""
+    all tags. prior: of the joint model, as it is. first: the first tag is more important than the others."""
     problem, rng = world.problem, np.random.default_rng([seed, TAGS_SEED])
     rule = LocalizationRule(threshold=problem.threshold)
     row = Row("tags", bias_sd=bias_sd, own_sd=problem.sigma, stated_sd=problem.sigma, heading_sigma=0.0)
     one = row.sensor(world.target(seed, rng), rng)
     sensors = [one, *(replace(one, target=world.target(seed, rng)) for _ in range(count - 1))]
     unknown = prior_of(problem, model, prior)
-    tags = [_Tag(sensor, unknown, unknown, []) for sensor in sensors]
+    tags = [_Tag(sensor, unknown, unknown, [], int(first and sensor is not one)) for sensor in sensors]
     here, time, place = np.array(world.platform), 0.0, np.array(world.platform)
     for number in range(MOST_BEARINGS):
         leg = float(np.hypot(*(place - here)))
@@ -110,11 +116,11 @@ def fly_tags(
         for tag in tags:
             tag.localized = verdict(problem, rule, tag.bearings, tag.belief).localized
             if tag.localized and tag.claim is None:
-                tag.claim = _claim(tag, world, seed, claimed=True)
+                tag.claim = _claim(tag, world, seed, time, claimed=True)
         if all(tag.localized for tag in tags):
             break
         place = _next_place(world, [tag for tag in tags if not tag.localized], here, options)
-    claims = [tag.claim or _claim(tag, world, seed, claimed=False) for tag in tags]
+    claims = [tag.claim or _claim(tag, world, seed, time, claimed=False) for tag in tags]
     return [replace(claim, time_s=time) for claim in claims]
 
 
@@ -131,11 +137,13 @@ def _next_place(world: Scenario, wanted: Sequence[_Tag], here: FloatArray, optio
         only = wanted[0]
         chosen = plan(world.problem, only.belief, only.bearings, platform, options, threads=1)
     else:
-        chosen = plan_several([Wanted(world.problem, tag.belief) for tag in wanted], platform, options, threads=1)
+        asked = [Wanted(world.problem, tag.belief, tag.rank) for tag in wanted]
+        chosen = plan_several(asked, platform, options, threads=1)
     return np.array([chosen.x, chosen.y])
 
 
-def _claim(tag: _Tag, world: Scenario, seed: int, *, claimed: bool) -> Claim:
-    """time_s: not known yet."""
+def _claim(tag: _Tag, world: Scenario, seed: int, time: float, *, claimed: bool) -> Claim:
+    """time: s, of now; that of the whole mission is not known yet."""
     sensor, bearings = tag.sensor, len(tag.bearings)
-    return claim_at(seed, claimed, tag.belief, world.problem, sensor.target, sensor.bias, bearings, time_s=0.0)
+    made = claim_at(seed, claimed, tag.belief, world.problem, sensor.target, sensor.bias, bearings, time_s=0.0)
+    return replace(made, found_s=time)

@@ -47,7 +47,8 @@ class Claim:
     that the error is beyond three times what it states.
 
     bias_off_deg, bias_sd_deg: what the belief was wrong by about the bias of the bearings, and what it stated of that
-    (NaN: it knows none).
+    (NaN: it knows none). found_s: of one of several emitters, until it was claimed, else until the mission's end; None
+    where there is but one.
     """
 
     seed: int
@@ -61,6 +62,7 @@ class Claim:
     time_s: float
     bias_off_deg: float
     bias_sd_deg: float
+    found_s: float | None = None
 
     @property
     def beyond(self) -> bool:
@@ -79,6 +81,7 @@ class Truth:
     share beyond three times the root mean square that the belief gives. mean_s: s until the claim or the last bearing.
     bias_inside: share in which the bias was within two of its stated standard deviations. prior: what was known of the
     sensor before. planner: who chose the places. shared: what one tag's bearings told of the compass counted for all.
+    first_s: of several emitters, mean s until the first of them was claimed, which in some rows is the most important.
     """
 
     row: str
@@ -102,6 +105,7 @@ class Truth:
     prior: str = UNKNOWN
     planner: TruthPlanner = "fisher"
     shared: bool = False
+    first_s: float | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Shares and times rounded to what the missions can tell; None: no mission told."""
@@ -250,7 +254,15 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNO
         stated_mean_m=float(np.mean([c.stated_m for c in claimed])) if claimed else nothing,
         bias_inside=float(np.mean([abs(c.bias_off_deg) <= 2.0 * c.bias_sd_deg for c in known])) if known else nothing,
         prior=prior,
+        first_s=_first_s(claims),
     )
+
+
+def _first_s(claims: Sequence[Claim]) -> float | None:
+    """Of each mission the first emitter's, which is the first claim with its seed; None where there is but one."""
+    first = {claim.seed: claim.found_s for claim in reversed(claims)}
+    times = [time for time in first.values() if time is not None]
+    return float(np.mean(times)) if times else None
 
 
 def _rounded(value: Any) -> Any:

@@ -47,13 +47,7 @@ def test_eight_tags_are_planned_flown_found_one_by_one_and_reported(server: Serv
     expect(screen.part("emitters")).to_have_attribute("data-found", "8", timeout=300_000)
     screen.expect_phase("done")
 
-    told = server.events(screen.mission_id)
-    found: dict[str, int] = {}
-    turns = 0
-    for event in told:
-        turns += event["kind"] == "sweep_started"
-        if event["kind"] == "belief_updated" and event["localized"]:
-            found.setdefault(event["emitter_id"], turns)
+    found = found_after(server.events(screen.mission_id))
     assert len(found) == 8
     assert len(set(found.values())) > 1, "one by one, not all at once"
     screen.go(f"#/report/{screen.mission_id}")
@@ -62,6 +56,74 @@ def test_eight_tags_are_planned_flown_found_one_by_one_and_reported(server: Serv
     for number, lead in enumerate(screen.part("report-lead").all(), 1):
         expect(lead).to_contain_text("It is at")
         expect(screen.part("report-emitter").nth(number - 1).locator("h2")).to_contain_text(f"hare {number}")
+
+
+def found_after(told: list[dict]) -> dict[str, int]:
+    """By emitter, how many turns it took until it was localized."""
+    found: dict[str, int] = {}
+    turns = 0
+    for event in told:
+        turns += event["kind"] == "sweep_started"
+        if event["kind"] == "belief_updated" and event["localized"]:
+            found.setdefault(event["emitter_id"], turns)
+    return found
+
+
+def test_the_tag_that_is_set_first_is_flown_for_and_found_first_and_the_order_changes_in_flight(
+    server: Server, screen: Screen
+) -> None:
+    server.order("battery", percent=100)
+    alone = {"bearing_errors": "independent", "shared_errors": False, "pulses_per_heading": 1}
+    screen.go(f"#/new/{server.draft(alone, expected_rmse_m=12.0, minimum_crossing_angle_deg=0)}")
+    screen.part("field-emitters-0-kind").select_option("pulsed")
+    lines = [f"{tag} hare {number}" for number, tag in enumerate(TAGS, 1)]
+    screen.part("emitter-list").fill("\n".join([*lines[:6], f"{lines[6]} !0", lines[7]]))
+    screen.part("emitter-list").blur()
+    expect(screen.part("emitter-list-bad")).to_contain_text("from 1 (first) to 32")
+    screen.part("emitter-list").fill("\n".join([*lines[:6], f"{lines[6]} !1", lines[7]]))
+    screen.part("emitter-list").blur()
+    expect(screen.part("emitter-list-bad")).to_have_count(0)
+    expect(screen.part("emitter-order").locator("summary")).to_contain_text("hare 7, then the others")
+    screen.part("save").click()
+    screen.checked()
+    screen.start()
+    first = next(
+        emitter["emitter_id"]
+        for emitter in server.get(f"/api/missions/{screen.mission_id}")["spec"]["emitters"]
+        if emitter["label"] == "hare 7"
+    )
+    expect(screen.part(f"place-{first}")).to_have_text("first")
+    expect(screen.part("why")).to_contain_text("For hare 7 first", timeout=60_000)
+    expect(screen.part(f"left-{first}")).to_be_visible()
+    expect(screen.part(f"emitter-{first}")).to_have_attribute("data-localized", "true", timeout=240_000)
+
+    others = [name for name in found_ids(server, screen) if name != first]
+    open_still = [name for name in others if screen.part(f"emitter-{name}").get_attribute("data-localized") == "false"]
+    assert open_still, "what comes first is found before the last"
+    second = open_still[-1]
+    screen.part("order").focus()
+    screen.page.keyboard.press("Enter")
+    screen.part(f"first-{second}").focus()
+    screen.page.keyboard.press("Enter")
+    expect(screen.part(f"place-{second}")).to_have_text("first")
+    expect(screen.part(f"place-{first}")).to_have_text("no. 2")
+    expect(screen.row("priorities_changed")).to_contain_text("then hare 7")
+    screen.part(f"later-{second}").click()
+    expect(screen.part(f"place-{second}")).to_have_text("first")
+    expect(screen.part(f"place-{first}")).to_have_text("first")
+    expect(screen.part("emitters")).to_have_attribute("data-found", "8", timeout=300_000)
+    screen.expect_phase("done")
+    found = found_after(server.events(screen.mission_id))
+    assert found[first] <= sorted(found.values())[3], "among the first half, wherever it stands"
+    assert found[first] < max(found.values())
+    screen.go(f"#/report/{screen.mission_id}")
+    expect(screen.part("report")).to_have_attribute("data-ready", "true")
+    expect(screen.part("report-order").nth(6)).to_contain_text("no. 1")
+    expect(screen.part("report-order").nth(6)).to_contain_text("after the start")
+
+
+def found_ids(server: Server, screen: Screen) -> list[str]:
+    return [one["emitter_id"] for one in server.get(f"/api/missions/{screen.mission_id}")["spec"]["emitters"]]
 
 
 def test_an_animal_that_walks_is_localized_at_a_time_and_followed_on(server: Server, screen: Screen) -> None:

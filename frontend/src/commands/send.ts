@@ -7,7 +7,7 @@ import { controlView, fenceOf } from "../state/control";
 import type { Command, CommandReply, Problem } from "../wire";
 
 /** Where on the page an answer belongs. */
-export type Desk = "bar" | "control" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area" | "truth";
+export type Desk = "bar" | "control" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area" | "truth" | "order";
 
 export const problems = signal<Partial<Record<Desk, Problem>>>({});
 

@@ -1,5 +1,10 @@
 // Several emitters as a list to paste into. What is wrong is said line by line, and nothing is taken until all is right.
 import { type MessageKey, t } from "../i18n";
+import { OrderButtons } from "../panels/OrderButtons";
+import { PlaceInOrder } from "../panels/PlaceInOrder";
+import { emitterName } from "../state/emitterName";
+import { importanceWords, inOrder, type Priorities, prioritiesOf } from "../state/importance";
+import type { EmitterSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";
 import { badLineWords, LIST, listOf, readList } from "./emitterList";
@@ -13,6 +18,33 @@ function take(text: string): void {
   const kept = Object.fromEntries(Object.entries(now.text).filter(([path]) => path !== LIST && !OWN.includes(path)));
   if (bad.length > 0 || emitters.length === 0) update({ ...now, text: { ...kept, [LIST]: text } });
   else update({ ...now, spec: { ...now.spec, emitters }, text: kept });
+}
+
+function order(priorities: Priorities): void {
+  const now = draft.peek()!;
+  update({ ...now, spec: { ...now.spec, emitters: inOrder(now.spec.emitters, priorities) } });
+}
+
+/** Nothing to put in order while the list is not understood. */
+function Order({ emitters }: { emitters: readonly EmitterSpec[] }) {
+  return (
+    <details class="more" data-testid="emitter-order">
+      <summary>
+        {t("order.change")}: {importanceWords(emitters, prioritiesOf(emitters))}
+      </summary>
+      <ol class="order-rows">
+        {emitters.map(({ emitter_id: id }) => (
+          <li key={id}>
+            <span>
+              {emitterName(emitters, id)}
+              <PlaceInOrder emitters={emitters} id={id} />
+            </span>
+            <OrderButtons emitters={emitters} id={id} onOrder={order} />
+          </li>
+        ))}
+      </ol>
+    </details>
+  );
 }
 
 export function EmitterListField() {
@@ -46,6 +78,7 @@ export function EmitterListField() {
           </div>
         ))}
       </div>
+      {raw === undefined && spec.emitters.length > 1 && <Order emitters={spec.emitters} />}
     </div>
   );
 }

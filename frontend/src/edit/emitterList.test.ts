@@ -3,7 +3,7 @@ import { someSpec } from "../wire/examples";
 import { listOf, MOST_EMITTERS, readList } from "./emitterList";
 
 const [first] = someSpec().emitters;
-const before = [{ ...first!, emitter_id: "emitter-1", frequency_hz: 150_000_000, label: "tag" }];
+const before = [{ ...first!, emitter_id: "emitter-1", frequency_hz: 150_000_000, label: "tag", priority: null }];
 
 it("a pasted list becomes emitters in its order, each under an id of its own", () => {
   const { emitters, bad } = readList("150.125 vixen\r\n\n 150,250;boar 3\n868300 kHz\n150.0\n", before);
@@ -25,6 +25,20 @@ it("a frequency that stays keeps its prior and its rhythm", () => {
   const known = [{ ...before[0]!, emitter_id: "mine", pulse_period_s: 2.5 }];
   const { emitters } = readList("151\n150 renamed", known);
   expect(emitters[1]).toEqual({ ...known[0], label: "renamed" });
+});
+
+it("a number behind ! puts it in the order of importance, and without one it comes last", () => {
+  const { emitters, bad } = readList("150.1 vixen !2\n150.2 !1\n150.3 hare!1\n150.4 boar", [{ ...before[0]!, priority: 1 }]);
+  expect(bad).toEqual([]);
+  expect(emitters.map(({ label, priority }) => [label, priority])).toEqual([
+    ["vixen", 2],
+    ["tag", 1],
+    ["hare!1", null],
+    ["boar", null],
+  ]);
+  expect(readList(listOf(emitters), emitters)).toEqual({ emitters, bad: [] });
+  const wrong = readList("150.1 a !0\n150.2 b !33\n150.3 c !999999999", before).bad;
+  expect(wrong.map(({ line, problem }) => [line, problem])).toEqual([1, 2, 3].map((line) => [line, "edit.list.bad.priority"]));
 });
 
 it("every bad line is named with what is wrong with it", () => {

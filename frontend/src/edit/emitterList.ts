@@ -9,6 +9,8 @@ export const MOST_EMITTERS = 32;
 const HZ: Record<string, number> = { hz: 1, khz: 1e3, mhz: 1e6, ghz: 1e9 };
 /** MHz unless a unit is written; what follows is the name. */
 const LINE = /^([\d.,]+)\s*(hz|khz|mhz|ghz)?(?:[\s;,:]+(.*))?$/i;
+/** Behind the name: where it stands in the order of importance, 1 first. */
+const PRIORITY = /\s!(\d{1,9})$/;
 
 export interface BadLine {
   line: number;
@@ -24,24 +26,28 @@ export interface EmitterList {
 export const shownMhz = (hz: number): string => String(Number((hz / 1e6).toPrecision(12)));
 
 export const listOf = (emitters: readonly EmitterSpec[]): string =>
-  emitters.map(({ frequency_hz, label }) => `${shownMhz(frequency_hz)} ${label}`).join("\n");
+  emitters.map(({ frequency_hz, label, priority }) => `${shownMhz(frequency_hz)} ${label}${priority ? ` !${priority}` : ""}`).join("\n");
 
 interface Read {
   hz: number;
   name: string;
+  priority: number | null;
 }
 
 function frequency(line: string): Read | null {
-  const [, digits, unit, name] = LINE.exec(line) ?? [];
+  const ranked = PRIORITY.exec(line)?.[1];
+  const [, digits, unit, name] = LINE.exec(line.replace(PRIORITY, "")) ?? [];
   const plain = digits?.replace(",", ".") ?? "";
   if (!/^(\d+\.?\d*|\.\d+)$/.test(plain)) return null;
-  return { hz: Number((Number(plain) * HZ[(unit ?? "MHz").toLowerCase()]!).toPrecision(12)), name: (name ?? "").trim() };
+  const hz = Number((Number(plain) * HZ[(unit ?? "MHz").toLowerCase()]!).toPrecision(12));
+  return { hz, name: (name ?? "").trim(), priority: ranked === undefined ? null : Number(ranked) };
 }
 
 function problemOf(found: Read | null, emitters: readonly EmitterSpec[]): BadLine["problem"] | null {
   if (!found) return "edit.list.bad.frequency";
   if (!(found.hz > 0 && found.hz <= 1e12)) return "edit.list.bad.range";
   if (found.name.length > 80) return "edit.list.bad.name";
+  if (found.priority !== null && !(found.priority >= 1 && found.priority <= MOST_EMITTERS)) return "edit.list.bad.priority";
   if (emitters.some((e) => e.frequency_hz === found.hz)) return "edit.list.bad.twice";
   return emitters.length === MOST_EMITTERS ? "edit.list.bad.many" : null;
 }
@@ -67,7 +73,7 @@ export function readList(text: string, before: readonly EmitterSpec[]): EmitterL
     }
     const known = before.find((e) => e.frequency_hz === found.hz);
     const label = found.name || known?.label || first.label;
-    emitters.push({ ...(known ?? { ...first, emitter_id: freshId(), frequency_hz: found.hz }), label });
+    emitters.push({ ...(known ?? { ...first, emitter_id: freshId(), frequency_hz: found.hz }), label, priority: found.priority });
   }
   return { emitters, bad };
 }

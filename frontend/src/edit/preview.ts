@@ -43,6 +43,9 @@ export const firstPlan = ({ first_place, start: _start, times_s: _times, ...foun
   source: "planner",
   by: null,
   altitude_amsl_m: null,
+  forecasts: [],
+  first: [],
+  set_back: [],
 });
 
 /** Counts of `times` in equal classes from the least to the largest. */

@@ -18,6 +18,10 @@ export const reasonsEn: ReasonTable = {
     text: "By way of this place the {emitters} emitters still looked for are localized after about {mean_time_s} on average, sooner than by any other of {places|place|places} tried.",
     remedy: "",
   },
+  soonest_for_first: {
+    text: "For {names} first: localized in about {first_time_s} by way of this place, of {places|place|places} tried. {others|other emitter decides|other emitters decide} only between places that are as good for that.",
+    remedy: "",
+  },
   quickest_place_found: {
     text: "Localized in about {expected_time_s} by way of this place, found by {search?quadrant=quadrant search|sgd=stochastic gradient descent|bfgs=BFGS}.",
     remedy: "",
@@ -1656,6 +1660,18 @@ export const reasonsEn: ReasonTable = {
   quality_too_low: {
     text: "The quality {quality:2} is below {wanted:2}.",
     remedy: "Take the sweep again.",
+  },
+  unheard_for_long: {
+    text: "It was not heard from the last {places|place|places}; the others come first until it is heard.",
+    remedy: "Set the order again to look for it first all the same.",
+  },
+  unclear_for_long: {
+    text: "Its bearings have contradicted each other for {places|place|places}; the others come first until they agree.",
+    remedy: "Look at its bearings and leave out a wrong one, or set the order again.",
+  },
+  first_for_long: {
+    text: "{places|place was|places were} chosen for it first and it is not localized; the others come first now.",
+    remedy: "Set the order again to look for it first all the same.",
   },
   database_silent: {
     text: "The database does not answer: {detail}.",

@@ -6,10 +6,12 @@ import { ProblemBox } from "../panels/ProblemNote";
 import { ReportMap } from "../panels/ReportMap";
 import * as api from "../sources/api";
 import { polygonsOf } from "../state/areas";
+import { claimedAfterS } from "../state/claimedAfter";
 import { emitterName } from "../state/emitterName";
 import { eventWords } from "../state/eventWords";
 import { isTold } from "../state/flown";
 import { extent } from "../state/geometry";
+import { placeOf } from "../state/importance";
 import { type MissionState, missionAt } from "../state/mission";
 import type { Route } from "../state/route";
 import { settings } from "../state/settings";
@@ -37,6 +39,8 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
   const judged = estimate && place ? judge(estimate, place) : null;
   const left = bearings.filter((b) => b.excluded).length;
   const parts = estimate ? polygonsOf(estimate.c95 as Area) : [];
+  const number = placeOf(spec?.emitters ?? [], emitterId);
+  const after = told.mission.emitters.size > 1 ? claimedAfterS(told.events, emitterId) : null;
   const reach = extent(parts.flatMap(([outline]) => outline ?? []));
   return (
     <section data-testid="report-emitter">
@@ -49,6 +53,12 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
             })
           : t("report.nothing")}
       </p>
+      {(number !== null || after !== null) && (
+        <p data-testid="report-order">
+          {number !== null && t("report.priority", { number: number })}{" "}
+          {after !== null && t("report.after", { time: formatDuration(after) })}
+        </p>
+      )}
       {estimate && (
         <p>
           {t("report.region", {

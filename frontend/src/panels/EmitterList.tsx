@@ -1,13 +1,23 @@
-// All emitters of a search that has several: number and colour as on the map, and how far each one is. One is looked at.
+// All emitters of a search that has several: number and colour as on the map, how far each one is, and their order of importance.
+import { signal } from "@preact/signals";
+import { send } from "../commands/send";
 import { t } from "../i18n";
+import { source } from "../state/connection";
 import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
 import { emitterName } from "../state/emitterName";
-import { emittersThen } from "../state/moment";
+import { groupsOf } from "../state/importance";
+import { cursor, emittersThen } from "../state/moment";
 import { selectedEmitter } from "../state/selection";
 import { settings } from "../state/settings";
-import { mission } from "../state/shown";
-import { formatLength } from "../units/quantities";
+import { mission, shownTimeMs } from "../state/shown";
+import { remainingTimes } from "../state/timeLeft";
+import { formatDuration, formatLength } from "../units/quantities";
+import { OrderButtons } from "./OrderButtons";
+import { PlaceInOrder } from "./PlaceInOrder";
+import { ProblemNote } from "./ProblemNote";
+
+const ordering = signal(false);
 
 function stateWords(emitter: EmitterState | undefined): string {
   const fact = emitter?.belief?.fact;
@@ -18,22 +28,40 @@ function stateWords(emitter: EmitterState | undefined): string {
 }
 
 export function EmitterList() {
-  const { spec, emitterId } = mission.value;
+  const { spec, emitterId, missionId, plan, startedAt, ended } = mission.value;
   const emitters = spec?.emitters ?? [];
   if (emitters.length < 2) return null;
   const states = emittersThen.value;
   const found = emitters.filter((e) => states.get(e.emitter_id)?.belief?.fact.localized).length;
+  const steers = missionId !== null && startedAt !== null && !ended && cursor.value === null && (source.value?.takesCommands ?? false);
+  const back = new Set(ended ? [] : plan?.fact.set_back?.map((one) => one.emitter_id));
+  const open = steers && ordering.value;
+  // what is pressed stays under the thumb
+  const rows = open ? emitters.map((e) => e.emitter_id) : groupsOf(emitters).flat();
+  const times = remainingTimes(mission.value, shownTimeMs.value);
   return (
     <div class="emitters" data-testid="emitters" data-found={found}>
-      <p class="emitters-head">{t("emitters.count", { found, all: emitters.length })}</p>
-      <ol>
-        {emitters.map(({ emitter_id: id, frequency_hz }, index) => {
+      <p class="emitters-head">
+        <span>{t("emitters.count", { found, all: emitters.length })}</span>
+        {steers && (
+          <button type="button" data-testid="order" aria-expanded={open} onClick={() => (ordering.value = !open)}>
+            {t(open ? "order.done" : "order.change")}
+          </button>
+        )}
+      </p>
+      {open && <p class="muted order-hint">{t("order.hint")}</p>}
+      <ProblemNote desk="order" />
+      <ol class={open ? "whole" : ""}>
+        {rows.map((id) => {
+          const index = emitters.findIndex((e) => e.emitter_id === id);
           const { fill, ink } = emitterColour(index);
           const localized = states.get(id)?.belief?.fact.localized ?? false;
+          const left = localized ? undefined : times.get(id);
           return (
-            <li key={id}>
+            <li key={id} class={open ? "in-order" : ""}>
               <button
                 type="button"
+                class="emitter-row"
                 data-testid={`emitter-${id}`}
                 data-localized={localized}
                 aria-pressed={id === emitterId}
@@ -43,10 +71,24 @@ export function EmitterList() {
                   {index + 1}
                 </span>
                 <span class="emitter-name">
-                  {emitterName(emitters, id)} <small>{t("emitters.mhz", { mhz: Number((frequency_hz / 1e6).toFixed(4)) })}</small>
+                  <span>
+                    {emitterName(emitters, id)}
+                    <PlaceInOrder emitters={emitters} id={id} standsBack={back.has(id)} />
+                  </span>
+                  <small>{t("emitters.mhz", { mhz: Number((emitters[index]!.frequency_hz / 1e6).toFixed(4)) })}</small>
                 </span>
-                <span class="emitter-state">{stateWords(states.get(id))}</span>
+                <span class="emitter-state">
+                  {stateWords(states.get(id))}
+                  {left !== undefined && <small data-testid={`left-${id}`}>{t("emitters.left", { time: formatDuration(left) })}</small>}
+                </span>
               </button>
+              {open && (
+                <OrderButtons
+                  emitters={emitters}
+                  id={id}
+                  onOrder={(priorities) => void send("order", missionId, { kind: "set_priorities", priorities })}
+                />
+              )}
             </li>
           );
         })}

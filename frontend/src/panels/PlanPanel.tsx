@@ -6,6 +6,7 @@ import { send } from "../commands/send";
 import { locale, reasonText, t } from "../i18n";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { source } from "../state/connection";
+import { emitterName } from "../state/emitterName";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
 import { highlighted } from "../state/highlight";
 import { isHomeward } from "../state/mission";
@@ -225,7 +226,7 @@ function Decision({ id }: { id: string }) {
 }
 
 export function PlanPanel() {
-  const { plan, missionId, phase, startedAt } = mission.value;
+  const { plan, missionId, phase, startedAt, spec } = mission.value;
   const proposed = proposal.value;
   const isLive = cursor.value === null && !isHomeward(mission.value);
   const fact = plan?.fact;
@@ -250,6 +251,11 @@ export function PlanPanel() {
       ) : (
         <p class="muted">{t("plan.none")}</p>
       )}
+      {fact?.set_back?.map(({ emitter_id: id, reason }) => (
+        <p class="muted" data-testid="set-back" key={id}>
+          {t("order.back", { name: emitterName(spec?.emitters ?? [], id), reason: reasonText(reason) })}
+        </p>
+      ))}
       {missionId && isLive && startedAt && liveMission.value.missionId === missionId && <Decision id={missionId} />}
       {missionId && isLive && source.value?.keptByServer && phase === "hold" && (
         <a class="button" data-testid="change-area" href={areaAddress(missionId)}>

@@ -35,6 +35,7 @@ export function toneOf(event: MissionEvent): EventTone {
       return "bearing";
     case "plan_chosen":
     case "plan_vetoed":
+    case "priorities_changed":
       return "decision";
     case "alert_raised":
     case "order_not_done":

@@ -3,6 +3,7 @@ import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
 import { emitterName } from "./emitterName";
+import { importanceWords } from "./importance";
 import { wayWords } from "./wayWords";
 import { authorityWords, checkName, phaseName, sourceName } from "./words";
 
@@ -25,6 +26,7 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
   exclude_bearing: "command.exclude_bearing",
   include_bearing: "command.include_bearing",
   mute_source: "command.mute_source",
+  set_priorities: "command.set_priorities",
   acknowledge_alert: "command.acknowledge_alert",
   take_control: "command.take_control",
   ask_control: "command.ask_control",
@@ -58,11 +60,14 @@ function beliefWords({ estimate, consistent, localized, contradicting, bearings,
 /** emitters: all that the mission looks for; with several, an event says whom it is about. */
 export function eventWords({ event }: Recorded, units: UnitSystem, emitters: readonly EmitterSpec[]): string {
   const about = "emitter_id" in event && emitters.length > 1 ? event.emitter_id : null;
-  const words = wordsOf(event, units);
+  const words =
+    event.kind === "priorities_changed"
+      ? t("event.priorities_changed", { by: byWords(event.by), order: importanceWords(emitters, event.priorities) })
+      : wordsOf(event, units);
   return about === null ? words : `${emitterName(emitters, about)}: ${words}`;
 }
 
-function wordsOf(event: MissionEvent, units: UnitSystem): string {
+function wordsOf(event: Exclude<MissionEvent, EventOf<"priorities_changed">>, units: UnitSystem): string {
   switch (event.kind) {
     case "mission_drafted":
       return t("event.mission_drafted");

@@ -16,6 +16,7 @@ import type {
 } from "../wire";
 import { type CraftState, emptyCraft, foldCraft } from "./craft";
 import { type At, type EmitterState, emptyEmitter, foldEmitter, type MutedSources, muteEmitter, sourceKey } from "./emitter";
+import { inOrder } from "./importance";
 
 /** craftId, emitterId: whom it concerns; null of both: the whole mission. */
 export interface Alert {
@@ -110,6 +111,8 @@ function foldSearch(state: MissionState, { event, at_utc: at, seq }: Recorded): 
       return { ...withSpec(state, event.spec, seq), checks: null, preflightPassed: null };
     case "area_changed":
       return state.spec ? withSpec(state, searching(state.spec, event.search), seq) : state;
+    case "priorities_changed":
+      return state.spec ? { ...state, spec: { ...state.spec, emitters: inOrder(state.spec.emitters, event.priorities) } } : state;
     case "mission_labelled":
       return state.spec ? { ...state, spec: { ...state.spec, name: event.name } } : state;
     case "preflight_checked":

@@ -15,6 +15,21 @@ export function remainingTime(mission: MissionView, timeMs: number): TimeLeft | 
   if (!plan || belief?.fact.localized || isHomeward(mission)) return null;
   const { expected_time_s: mean, time_90_s: worst } = plan.fact;
   if (mean === null) return null;
-  const elapsed = Math.max(0, (timeMs - Date.parse(plan.at) - pausedMs(mission, timeMs)) / 1000);
+  const elapsed = elapsedS(mission, plan, timeMs);
   return { meanS: Math.max(0, mean - elapsed), worstS: worst === null ? null : Math.max(0, worst - elapsed) };
+}
+
+const elapsedS = (mission: MissionView, plan: { at: string }, timeMs: number): number =>
+  Math.max(0, (timeMs - Date.parse(plan.at) - pausedMs(mission, timeMs)) / 1000);
+
+/** Seconds by emitter id, of a plan for several: each if it were flown for by itself from the place on. */
+export function remainingTimes(mission: MissionView, timeMs: number): ReadonlyMap<string, number> {
+  const { plan } = mission;
+  if (!plan || isHomeward(mission)) return new Map();
+  const elapsed = elapsedS(mission, plan, timeMs);
+  return new Map(
+    (plan.fact.forecasts ?? []).flatMap(({ emitter_id: id, expected_time_s: mean }) =>
+      mean === null ? [] : [[id, Math.max(0, mean - elapsed)] as const],
+    ),
+  );
 }

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { BeliefUpdated, MissionEvent, SweepRejected } from "../wire";
-import { CRAFT, EMITTER, excluded, record, someBearing, someReason } from "../wire/examples";
+import { CRAFT, EMITTER, excluded, record, someBearing, someReason, someSpec } from "../wire/examples";
 import { missionAt } from "./mission";
 import { suppose, viewOf } from "./view";
 
@@ -42,4 +42,17 @@ it("shows what the sweeps would have told in the place of what they told, each a
   expect(state.rejected.map((r) => [r.fact.sweep_id, r.seq])).toEqual([["sb", 2]]);
   expect(state.belief?.fact).toBe(belief);
   expect(state.plan).toBeNull();
+});
+
+it("shows the most important emitter unless another one is chosen, and follows the order as it changes", () => {
+  const spec = someSpec();
+  const [one] = spec.emitters;
+  const emitters = ["a", "b"].map((id) => ({ ...one!, emitter_id: id, priority: null }));
+  const drafted: MissionEvent = { kind: "mission_drafted", spec: { ...spec, emitters } };
+  const ordered: MissionEvent = { kind: "priorities_changed", priorities: { b: 1 }, by: "o" };
+  expect(seen(drafted).emitterId).toBe("a");
+  expect(seen(drafted, ordered).emitterId).toBe("b");
+  expect(seen(drafted, ordered).spec?.emitters.map((e) => e.priority)).toEqual([null, 1]);
+  expect(viewOf(missionAt(record(drafted, ordered), Infinity), null, "a").emitterId).toBe("a");
+  expect(seen(drafted, ordered, { ...ordered, priorities: {} }).emitterId).toBe("a");
 });

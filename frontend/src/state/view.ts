@@ -2,6 +2,7 @@
 import type { LinkName, MissionPhase, PlanChosen, Reason, WhatIf } from "../wire";
 import { type CraftState, emptyCraft, type Lost, pilotHas } from "./craft";
 import { type At, type Bearing, type BeliefPoint, type EmitterState, emptyEmitter, type Rejected, type Way } from "./emitter";
+import { groupsOf } from "./importance";
 import type { MissionState } from "./mission";
 
 export interface Pilot {
@@ -55,11 +56,12 @@ function phaseOf({ ended, startedAt, preflightPassed }: MissionState, craft: Cra
 const chosen = <T>(known: ReadonlyMap<string, T>, id: string | null | undefined): T | null =>
   known.get(id ?? "") ?? known.values().next().value ?? null;
 
-/** Of this craft and this emitter; one that the mission does not have, or none, means its first. */
+/** Of this craft and this emitter; one that the mission does not have, or none, means its first, or most important. */
 export function viewOf(state: MissionState, craftId?: string | null, emitterId?: string | null): MissionView {
   const { emitters, crafts, placeNumber, ...search } = state;
   const knownCraft = chosen(crafts, craftId);
-  const knownEmitter = chosen(emitters, emitterId);
+  const mostImportant = groupsOf(state.spec?.emitters ?? [])[0]?.[0];
+  const knownEmitter = chosen(emitters, emitters.has(emitterId ?? "") ? emitterId : mostImportant);
   const { engaged: _engaged, authoritySince, ...craft } = knownCraft ?? emptyCraft("", state.spec?.flight.automatic ?? true);
   return {
     ...search,

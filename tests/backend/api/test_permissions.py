@@ -260,6 +260,7 @@ COMMAND_BODIES: dict[str, dict[str, Any]] = {
     "set_automatic": {"automatic": True},
     "exclude_bearing": {"bearing_id": "b"},
     "include_bearing": {"bearing_id": "b"},
+    "set_priorities": {"priorities": {}},
     "mute_source": {"of": "person", "name": "b", "muted": True},
     "acknowledge_alert": {"alert_id": "a"},
     "change_area": {"search": {"area": AREA, "priors": {}, "fence": None, "fence_margin_m": 50, "no_fly": []}},

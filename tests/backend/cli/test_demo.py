@@ -15,6 +15,7 @@ from backend.events import (
     Event,
     MissionDrafted,
     MissionEnded,
+    MissionStarted,
     PhaseChanged,
     Recorded,
     SweepStarted,
@@ -106,6 +107,19 @@ def test_every_emitter_is_graded_against_its_own_truth() -> None:
     assert result["emitters"][1]["error_m"] == pytest.approx(30.0, rel=1e-3)
     assert result["error_m"] == result["emitters"][0]["error_m"]
     assert len(sentences(result)) == 3
+
+
+def test_the_one_to_look_for_first_is_marked_and_each_says_when_it_was_found() -> None:
+    emitters = sought(CARRIER, 3, most_important=2)
+    assert [emitter.priority for emitter in emitters] == [None, 1, None]
+    with pytest.raises(ValueError, match="--first 4: there are 3 emitters"):
+        sought(CARRIER, 3, most_important=4)
+    home = Place(50.0, 7.0)
+    begun = MissionStarted(craft_id=FIRST_CRAFT, by="demo", home=home, home_amsl_m=100.0, software="test")
+    flown = log(begun, belief(3.0, 10.0, "emitter-2"), ended("not_localized"), emitters=emitters)
+    flown.recorded[2] = flown.recorded[2].model_copy(update={"at_utc": datetime(2026, 1, 1, 0, 2, tzinfo=UTC)})
+    graded = summary(flown, Settings(), {emitter.frequency_hz: TRUTH for emitter in emitters})["emitters"]
+    assert [(one["priority"], one["found_s"]) for one in graded] == [(None, None), (1, 120.0), (None, None)]
 
 
 @pytest.mark.parametrize("first", [CARRIER, TAG])

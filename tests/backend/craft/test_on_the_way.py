@@ -16,7 +16,8 @@ from backend.craft.listening import Listening, channels_of
 from backend.craft.on_the_way import clear_m, heard_on_leg, swings_of
 from backend.craft.safety import Limits, limits_of
 from backend.events import HeardOnTheWay, PlaceReached
-from backend.search.state import EmitterState, SearchState
+from backend.search.emitter import EmitterState
+from backend.search.state import SearchState
 from backend.search.task import search_task
 from backend.spec import FIRST_EMITTER, EmitterSpec, MissionSpec
 from hardware.readings import HeadingSample, Place, PowerSample

@@ -94,6 +94,7 @@ def orders() -> list[Command]:
         "exclude_bearing",
         "include_bearing",
         "mute_source",
+        "set_priorities",
         "acknowledge_alert",
     }
     made: list[Command] = [

@@ -11,11 +11,12 @@ from ground import AREA, HOME, towards
 
 from backend.events import FIRST_CRAFT, AntennaChecked, BearingMeasured, CheckFact, PersonSource, TruthNoted
 from backend.ports import Lesson
+from backend.search.emitter import EmitterState
 from backend.search.lessons import errors_now, knowing, lesson, lesson_of_check, mean_bias
 from backend.search.localization import localization
 from backend.search.planning import foreseen
 from backend.search.source_priors import prior_in, priors_of
-from backend.search.state import EmitterState, SearchState
+from backend.search.state import SearchState
 from backend.search.task import search_task
 from backend.spec import FIRST_EMITTER, LearnedErrors, MissionSpec, SensorSpec
 from hardware.frame import LocalFrame

@@ -61,6 +61,7 @@ def every_input(state: SearchState) -> list[SearchInput]:
         commands.IncludeBearing(bearing_id=known),
         commands.IncludeBearing(bearing_id="unknown"),
         *(muting(name, muted) for name in (PERSON.name, "unheard of") for muted in (True, False)),
+        *(commands.SetPriorities(priorities=order) for order in ({}, {FIRST_EMITTER: 1}, {"nobody": 1})),
         commands.AcknowledgeAlert(alert_id="storage-1"),
     )
     return [
@@ -98,7 +99,9 @@ def check_rules(before: SearchState, given: SearchInput, after: SearchState, ask
     if after.spec != before.spec:
         edited = isinstance(given, Edited) and before.stage in ("draft", "ready")
         changed = isinstance(command, commands.ChangeArea) and before.stage == "open"
-        assert edited or changed
+        ordered = isinstance(command, commands.SetPriorities) and before.stage == "open"
+        assert edited or changed or ordered
+        assert not ordered or after.mission.in_order(before.mission.priorities) == before.mission
         assert not changed or (given.held and not given.objections)  # type: ignore[union-attr]
     if refusal(asked) is not None:
         assert after == before, "what is refused leaves no trace in the search"

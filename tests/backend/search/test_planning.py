@@ -79,6 +79,20 @@ def test_the_place_for_several_emitters_is_allowed_explained_and_not_refused_bef
         refused.append(choice.place)
 
 
+def test_the_place_for_what_comes_first_says_for_whom_and_what_to_expect_of_each() -> None:
+    emitters = [EmitterSpec(emitter_id=name, frequency_hz=150e6 + k, label="hare") for k, name in enumerate(("a", "b"))]
+    mission = MissionSpec(name="m", area=AREA, emitters=emitters, planner=PlannerSpec(budget=200))
+    targets = {"a": (40.0, 80.0), "b": (260.0, 90.0)}
+    wanted = [(localization(mission, HOME, name), [towards(0.0, -20.0, at)]) for name, at in targets.items()]
+    choice = next_place_together(wanted, (0.0, -20.0), 2, (), 1, ranks=[2, 1])
+    assert choice.reason.code == "soonest_for_first"
+    assert (choice.reason.names, choice.reason.others) == (("hare 2",), 1)
+    forecasts = {one.emitter_id: one.expected_time_s for one in choice.forecasts}
+    assert forecasts["b"] == pytest.approx(choice.reason.first_time_s)
+    assert choice.expected_time_s is not None
+    assert max(time for time in forecasts.values() if time is not None) <= choice.expected_time_s
+
+
 def test_the_way_goes_around_a_zone_and_straight_without_one() -> None:
     free = task()
     (end,) = way_to(free, (0.0, 0.0), (200.0, 0.0))

@@ -16,6 +16,7 @@ from backend.events import (
     Event,
     MissionDrafted,
     MissionStarted,
+    PrioritiesChanged,
     Recorded,
 )
 from backend.ports import TrackPoint
@@ -99,6 +100,13 @@ def of_two_emitters() -> list[Recorded]:
     """The tag's bearing was taken in the same sweep as the fox's first."""
     of_tag = bearing(1, 50.622, 7.202, 90.0).model_copy(update={"emitter_id": "tag", "bearing_id": "t1"})
     return numbered([*mission(FOX, TAG), of_tag])
+
+
+@pytest.fixture(scope="module")
+def fox_first(of_two_emitters: list[Recorded]) -> list[Recorded]:
+    """The order was changed in flight, after all that the two of them have."""
+    ordered = PrioritiesChanged(priorities={"fox": 1}, by="anna")
+    return numbered([*(record.event for record in of_two_emitters), ordered])
 
 
 @pytest.fixture(scope="module")

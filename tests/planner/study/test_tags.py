@@ -12,7 +12,8 @@ QUICK = PlannerOptions(budget=60)
 
 
 def test_the_rows_that_are_asked_for_exist_and_no_other():
-    assert TAGS == {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8}
+    several = {"tags_4": 4, "tags_8": 8}
+    assert several | {f"{row}_{more}": tags for row, tags in several.items() for more in ("bias5", "first")} == TAGS
     with pytest.raises(StudyError, match="tags_8"):
         next(tags_missions("tags_5", [1], "independent"))
 
@@ -34,6 +35,19 @@ def test_a_wrong_compass_is_one_compass_for_all_tags_and_shared_it_is_known_bett
     assert all(claim.claimed for claim in shared)
     assert np.mean([claim.bias_sd_deg for claim in shared]) < np.mean([claim.bias_sd_deg for claim in alone])
     assert all(abs(claim.bias_off_deg) <= 3.0 * claim.bias_sd_deg for claim in shared)
+
+
+def test_the_tag_that_comes_first_is_flown_for_and_every_claim_says_when_it_was_made():
+    world = scenario("field")
+    seeds = (5, 6, 7, 8)
+    alike, ordered = (
+        [fly_tags(world, 3, seed, "independent", QUICK, first=some) for seed in seeds] for some in (False, True)
+    )
+    found = [np.mean([claims[0].found_s or np.nan for claims in missions]) for missions in (alike, ordered)]
+    assert found[1] < found[0]
+    for claims in (*alike, *ordered):
+        times = [claim.found_s for claim in claims if claim.found_s is not None]
+        assert (len(times), max(times)) == (3, claims[0].time_s)
 
 
 def test_the_independent_model_has_no_errors_to_share():

@@ -89,6 +89,18 @@ export const flight = {
     text: "Von dieser Drehung sind diese Werte unbekannt: {unknown?bearing=Peilung|sigma=Peilfehler|quality=Güte|altitude=Höhe|drift=Drift}.",
     remedy: "Die Drehung wiederholen.",
   },
+  unheard_for_long: {
+    text: "An den letzten {places|Ort|Orten} nicht gehört; die anderen kommen zuerst, bis er gehört wird.",
+    remedy: "Die Reihenfolge erneut setzen, um ihn trotzdem zuerst zu suchen.",
+  },
+  unclear_for_long: {
+    text: "Seine Peilungen widersprechen sich seit {places|Ort|Orten}; die anderen kommen zuerst, bis sie zusammenpassen.",
+    remedy: "Die Peilungen ansehen und eine falsche weglassen, oder die Reihenfolge erneut setzen.",
+  },
+  first_for_long: {
+    text: "{places|Ort wurde|Orte wurden} zuerst für ihn gewählt, und er ist nicht gefunden; nun kommen die anderen zuerst.",
+    remedy: "Die Reihenfolge erneut setzen, um ihn trotzdem zuerst zu suchen.",
+  },
   quality_too_low: { text: "Die Güte {quality:2} liegt unter {wanted:2}.", remedy: "Die Drehung wiederholen." },
 
   told_before: { text: "{text}", remedy: "{remedy}" },

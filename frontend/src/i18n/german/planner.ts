@@ -18,6 +18,10 @@ export const planner = {
     text: "Über diesen Ort sind die {emitters} noch gesuchten Sender im Mittel nach etwa {mean_time_s} gefunden, eher als über jeden anderen von {places} erprobten.",
     remedy: "",
   },
+  soonest_for_first: {
+    text: "Für {names} zuerst: gefunden in etwa {first_time_s} über diesen Ort, von {places|Ort|Orten} erprobt. {others|weiterer Sender entscheidet|weitere Sender entscheiden} nur zwischen Orten, die dafür gleich gut sind.",
+    remedy: "",
+  },
   quickest_place_found: {
     text: "Gefunden in etwa {expected_time_s} über diesen Ort, ermittelt durch {search?quadrant=Suche in Quadranten|sgd=stochastischen Gradientenabstieg|bfgs=BFGS}.",
     remedy: "",

@@ -1,0 +1,79 @@
+// @vitest-environment happy-dom
+import { render } from "preact";
+import { act } from "preact/test-utils";
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { live, source } from "../state/connection";
+import { missionAt } from "../state/mission";
+import type { MissionEvent } from "../wire";
+import { record, someBelief, somePlan, someSpec, started } from "../wire/examples";
+import { EmitterList } from "./EmitterList";
+
+const sent = vi.fn();
+vi.mock("../commands/send", () => ({ send: (...given: unknown[]) => sent(...given), problems: { value: {} }, report: () => undefined }));
+
+const part = (name: string) => document.querySelector<HTMLElement>(`[data-testid="${name}"]`);
+const press = (name: string) => act(() => part(name)!.click());
+
+function show(...events: MissionEvent[]): void {
+  const spec = someSpec();
+  const [one] = spec.emitters;
+  const emitters = ["a", "b", "c"].map((id, i) => ({ ...one!, emitter_id: id, label: `hare ${i + 1}`, priority: i === 1 ? 1 : null }));
+  const all = record({ kind: "mission_drafted", spec: { ...spec, emitters } }, started(), ...events);
+  live.value = { ...live.value, mission: missionAt(all, Number.POSITIVE_INFINITY), events: all };
+  act(() => render(<EmitterList />, document.body));
+}
+
+beforeEach(() => {
+  source.value = { takesCommands: true, keptByServer: true } as typeof source.value;
+});
+afterEach(() => {
+  if (part("order")?.getAttribute("aria-expanded") === "true") press("order");
+  act(() => render(null, document.body));
+  sent.mockClear();
+  source.value = null;
+});
+
+it("says who comes first, and how long each takes at least until it is found", () => {
+  const forecasts = ["a", "b", "c"].map((emitter_id, i) => ({ emitter_id, expected_time_s: 100 * (i + 1) }));
+  show(somePlan({ forecasts, first: ["b"] }), someBelief({ emitter_id: "c", localized: true }));
+  expect(part("place-b")?.textContent).toBe("first");
+  expect(part("place-a")).toBeNull();
+  expect(part("left-a")?.textContent).toContain("≥");
+  expect(part("left-c")).toBeNull();
+});
+
+it("puts what comes first at the top, and lets no row move while the order is being set", () => {
+  const order = () => [...document.querySelectorAll("[data-testid^=emitter-]")].map((row) => row.getAttribute("data-testid"));
+  show();
+  expect(order()).toEqual(["emitter-b", "emitter-a", "emitter-c"]);
+  press("order");
+  expect(order()).toEqual(["emitter-a", "emitter-b", "emitter-c"]);
+});
+
+it("marks the one that stands back", () => {
+  show(somePlan({ set_back: [{ emitter_id: "b", reason: { code: "unheard_for_long", places: 3 } }] }));
+  expect(part("emitter-b")?.textContent).toContain("stands back");
+  expect(part("place-b")).toBeNull();
+});
+
+it("gives the whole order with each press, and offers no step that there is not", () => {
+  show();
+  expect(part("first-a")).toBeNull();
+  press("order");
+  press("first-c");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { c: 1, b: 2 } });
+  press("sooner-a");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { b: 1, a: 2 } });
+  press("later-b");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: {} });
+  expect(part("sooner-b")?.getAttribute("aria-disabled")).toBe("true");
+  press("sooner-b");
+  expect(sent).toHaveBeenCalledTimes(3);
+});
+
+it("takes no orders for a recording", () => {
+  source.value = { takesCommands: false } as typeof source.value;
+  show();
+  expect(part("order")).toBeNull();
+  expect(part("place-b")?.textContent).toBe("first");
+});
