@@ -34,6 +34,8 @@ TAG_SENSOR = {"measurement_time_s": 45.0, "sigma_deg": 9.0}
 GAITS: tuple[Literal["animal", "walking", "drifting"], ...] = ("animal", "walking", "drifting")
 SPACING_HZ = 100_000.0
 """Between the frequencies of several emitters."""
+PERIODS_S = (1.3, 1.05, 1.6, 0.85)
+"""Of tags at one frequency."""
 
 
 def movement(kind: str | None, pace: float) -> MovementSpec:
@@ -46,15 +48,24 @@ def movement(kind: str | None, pace: float) -> MovementSpec:
     raise ValueError(f"--moves {kind!r} is not known: choose one of {', '.join(GAITS)}")
 
 
-def sought(first: EmitterSpec, count: int, moving: MovementSpec | None = None) -> list[EmitterSpec]:
-    """Emitters like the first, each at a frequency of its own."""
+def sought(
+    first: EmitterSpec, count: int, moving: MovementSpec | None = None, by_rhythm: bool = False
+) -> list[EmitterSpec]:
+    """Emitters like the first, each at a frequency of its own; by_rhythm: tags at one, each with a period of its own.
+    Raises ValueError for more of these than there are periods, and for carriers."""
+    if by_rhythm and (first.kind != "pulsed" or count > len(PERIODS_S)):
+        raise ValueError(f"--by-rhythm is for 2 to {len(PERIODS_S)} tags: add --tag, and --emitters")
     return [
         first.model_copy(
             update={
                 "emitter_id": f"emitter-{number}",
-                "frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ,
                 "movement": moving or MovementSpec(),
             }
+            | (
+                {"pulse_period_s": PERIODS_S[number - 1]}
+                if by_rhythm
+                else {"frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ}
+            )
         )
         for number in range(1, count + 1)
     ]
@@ -96,6 +107,10 @@ def demo(
     emitters: Annotated[
         int, typer.Option(min=1, max=MOST_EMITTERS, help="How many emitters to look for, each at its own frequency.")
     ] = 1,
+    by_rhythm: Annotated[
+        bool,
+        typer.Option("--by-rhythm", help="With --tag and --emitters: at one frequency, each with a period of its own."),
+    ] = False,
     moves: Annotated[
         str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")
     ] = None,
@@ -130,7 +145,7 @@ def demo(
     except ValueError as error:
         stop(error)
     try:
-        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace))
+        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace), by_rhythm)
         result = asyncio.run(_demo(settings, headless, json_, mend_failsafes, tag, looked_for))
     except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
         stop(error)

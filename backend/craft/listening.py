@@ -8,14 +8,17 @@ import math
 import time
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
+from backend.craft.shared_frequency import SharedFrequency
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.deadline import Deadline
 from hardware.ports import Clock, Receiver, ReceiverError
 from hardware.readings import Channel, PowerSample, Pulses
 from hardware.reasons.channels import FrequencyNotAskedFor
 from hardware.reasons.receiver import ReceiverSilent, ReceiverStreamEnded
+from hardware.reasons.sweep import PulsesNotGiven
 from hardware.reasons.union import HardwareReason
 from planner.reason import sentence_of
 
@@ -114,15 +117,15 @@ class Listening:
         """The newest sample of a channel, None before the first. Raises KeyError for a channel not listened to."""
         return self._ears[frequency_hz].last
 
-    def between(self, begin_s: float, end_s: float, frequency_hz: float) -> list[PowerSample]:
-        """A channel's samples taken in [begin_s, end_s], oldest first; pulses that were not heard among them."""
-        found: list[PowerSample] = []
-        for sample in reversed(self._ears[frequency_hz].samples):
-            if sample.at_s < begin_s:
-                break
-            if sample.at_s <= end_s:
-                found.append(sample)
-        return found[::-1]
+    def of(self, emitter: EmitterSpec, begin_s: float, end_s: float) -> list[PowerSample]:
+        """What was heard of an emitter in [begin_s, end_s], oldest first; pulses that were not heard among them. Of
+        several tags at its frequency: only pulses that are its own."""
+        return self._ears[emitter.frequency_hz].of(channel_of(emitter).pulses, begin_s, end_s)
+
+    def not_given(self, emitter: EmitterSpec, begin_s: float, end_s: float) -> PulsesNotGiven | None:
+        """The pulses at its frequency that are no tag's, or nobody knows whose; None where it sends alone, or where
+        there are none."""
+        return self._ears[emitter.frequency_hz].not_given(begin_s, end_s)
 
     async def heard_until(self, at_s: float) -> None:
         """Wait for every channel's samples of the time before `at_s`: a link or a busy machine brings them late.
@@ -159,6 +162,7 @@ class _Ear:
         self.patience_s = silent_after_s if pulses is None else max(silent_after_s, MISSED_PULSES * pulses.period_s)
         self.samples: deque[PowerSample] = deque(maxlen=KEPT_SAMPLES)
         self.heard = asyncio.Event()
+        self._tags = SharedFrequency(channel.rhythms) if channel.others else None
 
     @property
     def last(self) -> PowerSample | None:
@@ -168,6 +172,27 @@ class _Ear:
         self.samples.append(sample)
         if sample.detected:
             self.heard.set()
+            if self._tags is not None:
+                self._tags.take(sample.at_s)
+
+    def of(self, pulses: Pulses | None, begin_s: float, end_s: float) -> list[PowerSample]:
+        heard = self._between(begin_s, end_s)
+        if self._tags is None or pulses is None:
+            return heard
+        own = self._tags.times_of(pulses)
+        return [sample for sample in heard if not sample.detected or sample.at_s in own]
+
+    def not_given(self, begin_s: float, end_s: float) -> PulsesNotGiven | None:
+        return None if self._tags is None else self._tags.not_given(begin_s, end_s)
+
+    def _between(self, begin_s: float, end_s: float) -> list[PowerSample]:
+        found: list[PowerSample] = []
+        for sample in reversed(self.samples):
+            if sample.at_s < begin_s:
+                break
+            if sample.at_s <= end_s:
+                found.append(sample)
+        return found[::-1]
 
 
 def channel_of(emitter: EmitterSpec) -> Channel:
@@ -178,8 +203,12 @@ def channel_of(emitter: EmitterSpec) -> Channel:
 
 
 def channels_of(mission: MissionSpec) -> tuple[Channel, ...]:
-    """One a frequency, in the specification's order: emitters that share one are heard together."""
+    """One a frequency, in the specification's order: emitters that share one are heard together, and tags among them
+    told apart by their rhythms."""
     channels: dict[float, Channel] = {}
     for emitter in mission.emitters:
-        channels.setdefault(emitter.frequency_hz, channel_of(emitter))
+        own = channel_of(emitter)
+        known = channels.setdefault(emitter.frequency_hz, own)
+        if own.pulses is not None and known.pulses is not None and own.pulses not in known.rhythms:
+            channels[emitter.frequency_hz] = replace(known, others=(*known.others, own.pulses))
     return tuple(channels.values())

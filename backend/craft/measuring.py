@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import cycle
 from statistics import fmean
 from uuid import uuid4
@@ -17,7 +17,7 @@ from backend.craft.listening import Listening
 from backend.craft.sector_turns import Turned, TurnShown, turn_as_planned
 from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejected
 from backend.ports import SectorShown
-from backend.reasons import carried
+from backend.reasons import Reason, carried
 from backend.search.sector import TurnPlan
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
 from backend.spec import EmitterSpec, MissionSpec
@@ -26,7 +26,7 @@ from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_
 from hardware.ports import ReceiverError, VehicleError
 from hardware.readings import PowerSample, Sweep
 from hardware.reasons.receiver import NothingHeardInTurn
-from hardware.reasons.sweep import NoPulseHeard
+from hardware.reasons.sweep import NoPulseHeard, PulsesNotGiven, RhythmNotHeard
 from hardware.reasons.vehicle import PositionLost
 from hardware.reasons.vehicle_news import ClockRateOdd
 
@@ -68,7 +68,7 @@ async def measure(
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)
     heard = {
-        emitter.emitter_id: listening.between(turned.began_s, turned.ended_s, emitter.frequency_hz)
+        emitter.emitter_id: listening.of(emitter, turned.began_s, turned.ended_s)
         for emitter in mission.emitters
     }
     pulsed = any(emitter.kind == "pulsed" for emitter in mission.emitters)
@@ -76,7 +76,17 @@ async def measure(
         raise ReceiverError(NothingHeardInTurn())
     taken_s = equipment.clock.now() - ordered_s
     results = (
-        _result(equipment, mission, emitter, heard[emitter.emitter_id], place_number, attempt, turned, taken_s)
+        _result(
+            equipment,
+            mission,
+            emitter,
+            heard[emitter.emitter_id],
+            listening.not_given(emitter, turned.began_s, turned.ended_s),
+            place_number,
+            attempt,
+            turned,
+            taken_s,
+        )
         for emitter in mission.emitters
     )
     return tuple(await asyncio.gather(*results))
@@ -87,12 +97,13 @@ async def _result(
     mission: MissionSpec,
     emitter: EmitterSpec,
     samples: list[PowerSample],
+    not_given: PulsesNotGiven | None,
     place_number: int,
     attempt: int,
     turned: Turned,
     taken_s: float,
 ) -> Measured:
-    """taken_s: from the order to the bearing."""
+    """not_given: pulses at its frequency that nobody knows whose they are. taken_s: from the order to the bearing."""
     sweep_id = str(uuid4())
     source = CraftSource(craft_id=equipment.craft_id)
     taken = Taken(emitter.emitter_id, source, sweep_id, place_number, attempt, turned.turn)
@@ -119,16 +130,25 @@ async def _result(
         if telemetry.position is None:
             raise VehicleError(PositionLost()) from error
         unheard = emitter.kind == "pulsed" and not any(sample.detected for sample in samples)
-        reason = NoPulseHeard() if unheard else carried(error.reason)
-        told = silence if unheard and samples else None
+        reason = _unheard(not_given) if unheard else carried(error.reason)
+        told = silence if unheard and samples and not_given is None else None
         return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason, silence=told))
     sweep = turned.as_turned(sweep)
     if telemetry.odd_clock_rate is not None:  # it became so during the turn
         odd = ClockRateOdd(telemetry.odd_clock_rate)
         return Measured(sweep_id, sweep, rejected(taken, sweep.position, 0.0, odd))
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
+    if not_given is not None:
+        reading = replace(reading, remarks=(*reading.remarks, not_given))
     middle_s = fmean((turned.began_s, turned.ended_s))
     return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, middle_s, silence))
+
+
+def _unheard(not_given: PulsesNotGiven | None) -> Reason:
+    if not_given is None:
+        return NoPulseHeard()
+    left = not_given.overlapping + not_given.unclear + not_given.strangers
+    return RhythmNotHeard(not_given.given, left)
 
 
 async def _show_progress(
@@ -149,7 +169,7 @@ async def _show_progress(
             continue
         headings = equipment.vehicle.headings(shown.began_s)
         emitter = next(emitters)
-        found = listening.between(shown.began_s, equipment.clock.now(), emitter.frequency_hz)
+        found = listening.of(emitter, shown.began_s, equipment.clock.now())
         samples = [s for s in found if s.detected]
         if len(headings) < 2 or not samples:
             continue

@@ -107,7 +107,7 @@ async def _reading(
     turned: float,
 ) -> BearingReading | None:
     """Of what was heard so far; None when that is no sweep."""
-    heard = listening.between(*heard_s, emitter.frequency_hz)
+    heard = listening.of(emitter, *heard_s)
     try:
         sweep = assemble_sweep(
             [sample for sample in heard if sample.detected],

@@ -45,7 +45,7 @@ async def turn_and_listen(equipment: CraftEquipment, mission: MissionSpec, liste
         ended_s = equipment.clock.now()
         await listening.heard_until(ended_s)
         headings = equipment.vehicle.headings(began_s)
-        heard = [(tag, listening.between(began_s, ended_s, tag.frequency_hz)) for tag in _tags(mission)]
+        heard = [(tag, listening.of(tag, began_s, ended_s)) for tag in _tags(mission)]
         if all(complete(tag, mission.sensor.pulses_per_heading, samples, headings) for tag, samples in heard):
             break
     return began_s, ended_s

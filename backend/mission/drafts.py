@@ -17,6 +17,7 @@ from backend.mission.records import Records
 from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable, WasDeleted
 from backend.search.area import centre_of
 from backend.search.band import check_band
+from backend.search.told_apart import check_told_apart
 from backend.search.errors import MissionConflict
 from backend.search.importing import Upload, import_facts, imported_before
 from backend.search.importing_bearings import bearing_facts
@@ -127,4 +128,5 @@ def _check_spec(spec: MissionSpec) -> None:
     """Raises MissionInputError when the altitude lies outside its band, or when the areas make no sense, wherever the
     vehicle is: a mission may be planned far from it, or hold recordings only. Preflight refuses to fly it there."""
     check_band(spec.flight)
+    check_told_apart(spec.emitters)
     search_task(spec, centre_of(spec.area), 0.0)

@@ -16,6 +16,7 @@ from hardware.reasons.channels import FrequencyNotAskedFor
 from hardware.reasons.receiver import ReceiverSilent, ReceiverStreamEnded, ReceiverUnplugged
 
 CARRIER_HZ, TAG_HZ = 868.3e6, 150e6
+BEACON = EmitterSpec(frequency_hz=CARRIER_HZ)
 CARRIER, TAG = Channel(CARRIER_HZ), Channel(TAG_HZ, Pulses(0.02, 1.3))
 
 
@@ -42,11 +43,11 @@ async def test_samples_of_an_interval_come_in_order() -> None:
     await clock.sleep(3.0)
     end = clock.now()
     await clock.sleep(1.0)
-    found = listening.between(begin, end, CARRIER_HZ)
+    found = listening.of(BEACON, begin, end)
     assert found
     assert [s.at_s for s in found] == sorted(s.at_s for s in found)
     assert all(begin <= s.at_s <= end for s in found)
-    assert listening.between(end + 100.0, end + 200.0, CARRIER_HZ) == []
+    assert listening.of(BEACON, end + 100.0, end + 200.0) == []
     assert listening.state == "ok"
     await listening.stop()
     assert listening.state == "off"
@@ -66,7 +67,7 @@ async def test_samples_that_come_late_are_waited_for() -> None:
     listening.start()
     async with asyncio.timeout(60):
         await listening.heard_until(due_s)
-    in_time = listening.between(due_s - 2.0, due_s, CARRIER_HZ)
+    in_time = listening.of(BEACON, due_s - 2.0, due_s)
     assert [s.at_s for s in in_time] == pytest.approx([due_s - 1.0, due_s - 0.5, due_s])
     await listening.stop()
 
@@ -159,7 +160,7 @@ async def test_each_channel_keeps_its_own_samples() -> None:
     now = clock.now()
     await listening.heard_until(now)
     for frequency_hz in (CARRIER_HZ, TAG_HZ):
-        found = listening.between(0.0, now, frequency_hz)
+        found = listening.of(EmitterSpec(frequency_hz=frequency_hz), 0.0, now)
         assert found
         assert {sample.frequency_hz for sample in found} == {frequency_hz}
     await listening.stop()
