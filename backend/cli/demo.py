@@ -111,6 +111,10 @@ def demo(
         bool,
         typer.Option("--by-rhythm", help="With --tag and --emitters: at one frequency, each with a period of its own."),
     ] = False,
+    band: Annotated[
+        float | None,
+        typer.Option(min=5.0, help="The simulated receiver hears so many kHz at once, and the mission says so."),
+    ] = None,
     moves: Annotated[
         str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")
     ] = None,
@@ -141,6 +145,7 @@ def demo(
             time_factor=speedup if speedup is not None else (10.0 if vehicle is None else 1.0),
             seed=seed,
             world=world,
+            simulated_band_hz=None if band is None else band * 1000.0,
         )
     except ValueError as error:
         stop(error)
@@ -168,7 +173,7 @@ async def _demo(
 ) -> dict[str, Any]:
     changes: Mapping[str, Any] = {
         "emitters": [emitter.model_dump(mode="json") for emitter in emitters],
-        "sensor": TAG_SENSOR if tag else {},
+        "sensor": (TAG_SENSOR if tag else {}) | {"receiver_band_hz": settings.simulated_band_hz},
         "localization": {"follow": any(emitter.movement.kind != "still" for emitter in emitters)},
     }
     async with running_server(settings, emitters=simulated(emitters)) as running:

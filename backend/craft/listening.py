@@ -8,6 +8,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Literal
 
@@ -29,17 +30,35 @@ REOPEN_S = 1.0
 MISSED_PULSES = 10
 """This many pulses of a distant tag may be missed."""
 LATE_WALL_S = 2.0
+OPENING_WALL_S = 10.0
+SETTLING_S = 0.3
+"""After a change of channels, by the receiver's time: what was sampled before it, or while the tuner locks, is neither
+channel's."""
 CATCH_UP_S = 0.005
 """A receiver that catches up keeps everybody else waiting no longer; a sample a turn of the loop never catches up."""
 
 
 class Listening:
-    """Keeps the last samples of each channel. A receiver that fails is opened again every second until it answers."""
+    """Keeps the last samples of each channel. A receiver that fails is opened again every second until it answers.
 
-    def __init__(self, receiver: Receiver, clock: Clock, channels: Sequence[Channel], silent_after_s: float) -> None:
+    first: what is listened to until `hear` says otherwise, None: all channels. settling_samples: how many were left out,
+    since the receiver was still changing to its channels.
+    """
+
+    def __init__(
+        self,
+        receiver: Receiver,
+        clock: Clock,
+        channels: Sequence[Channel],
+        silent_after_s: float,
+        first: Sequence[Channel] | None = None,
+    ) -> None:
         self._receiver = receiver
         self._clock = clock
-        self._channels = tuple(channels)
+        self._tuned = tuple(channels if first is None else first)
+        self._opened = asyncio.Event()
+        self._settled_s = -math.inf
+        self.settling_samples = 0
         self._ears = {channel.frequency_hz: _Ear(channel, silent_after_s) for channel in channels}
         self._heard_at_s: float | None = None
         self._quiet_s = 0.0
@@ -58,10 +77,39 @@ class Listening:
             self._task = None
         await self._receiver.close()
 
+    async def hear(self, channels: Sequence[Channel]) -> None:
+        """These from now on, of those that it was made for; returns once the receiver has settled, or is known not to
+        have come: whatever is wrong shows in `trouble`."""
+        if tuple(channels) == self._tuned:
+            return
+        running, self._task = self._task, None
+        self._tuned = tuple(channels)
+        if running is None:
+            return
+        try:
+            running.cancel()
+            await asyncio.gather(running, return_exceptions=True)
+        finally:  # whoever is called away here leaves a receiver that listens
+            self._opened = asyncio.Event()
+            self._settled_s = math.inf
+            self._quiet_s = 0.0
+            self._task = asyncio.create_task(self._listen())
+        with suppress(TimeoutError):
+            async with asyncio.timeout(OPENING_WALL_S):
+                await self._opened.wait()
+        await self._clock.sleep(SETTLING_S)
+
+    def hears(self, emitter: EmitterSpec) -> bool:
+        """Whether it is tuned to that now."""
+        return any(channel.frequency_hz == emitter.frequency_hz for channel in self._tuned)
+
     async def _listen(self) -> None:
         while True:
             try:
-                await self._receiver.open(self._channels)
+                await self._receiver.open(self._tuned)
+                if self._settled_s == math.inf:
+                    self._settled_s = self._clock.now() + SETTLING_S
+                self._opened.set()
                 others_due = time.monotonic()
                 async for sample in self._receiver.samples():
                     self._take(sample)
@@ -79,6 +127,9 @@ class Listening:
         ear = self._ears.get(sample.frequency_hz)
         if ear is None:
             raise ReceiverError(FrequencyNotAskedFor(sample.frequency_hz))
+        if sample.at_s < self._settled_s:
+            self.settling_samples += 1
+            return
         ear.take(sample)
         self._heard_at_s = self._clock.now()
         self._quiet_s = 0.0
@@ -91,7 +142,7 @@ class Listening:
             return "off"
         if self._fault is not None:
             return "lost"
-        return "silent" if self._quiet_s > min(ear.patience_s for ear in self._ears.values()) else "ok"
+        return "silent" if self._quiet_s > min(ear.patience_s for ear in self._listening()) else "ok"
 
     def wait(self, seconds: float) -> None:
         """So much time went by in which a sample would have been noticed; silence is counted in it."""
@@ -128,11 +179,14 @@ class Listening:
         return self._ears[emitter.frequency_hz].not_given(begin_s, end_s)
 
     async def heard_until(self, at_s: float) -> None:
-        """Wait for every channel's samples of the time before `at_s`: a link or a busy machine brings them late.
+        """Wait for the samples of every channel that is listened to, of the time before `at_s`: a link or a busy machine brings them late.
 
         Not for a channel of which nothing new came for as long as it may be silent.
         """
-        await asyncio.gather(*(self._heard_until(at_s, ear) for ear in self._ears.values()))
+        await asyncio.gather(*(self._heard_until(at_s, ear) for ear in self._listening()))
+
+    def _listening(self) -> list[_Ear]:
+        return [self._ears[channel.frequency_hz] for channel in self._tuned]
 
     async def _heard_until(self, at_s: float, ear: _Ear) -> None:
         newest_s = -math.inf
@@ -203,10 +257,15 @@ def channel_of(emitter: EmitterSpec) -> Channel:
 
 
 def channels_of(mission: MissionSpec) -> tuple[Channel, ...]:
+    """All that a mission listens to."""
+    return channels_for(mission.emitters)
+
+
+def channels_for(emitters: Sequence[EmitterSpec]) -> tuple[Channel, ...]:
     """One a frequency, in the specification's order: emitters that share one are heard together, and tags among them
     told apart by their rhythms."""
     channels: dict[float, Channel] = {}
-    for emitter in mission.emitters:
+    for emitter in emitters:
         own = channel_of(emitter)
         known = channels.setdefault(emitter.frequency_hz, own)
         if own.pulses is not None and known.pulses is not None and own.pulses not in known.rhythms:

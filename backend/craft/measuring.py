@@ -6,7 +6,7 @@ import asyncio
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from itertools import cycle
+from itertools import count
 from statistics import fmean
 from uuid import uuid4
 
@@ -19,6 +19,7 @@ from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejec
 from backend.ports import SectorShown
 from backend.reasons import Reason, carried
 from backend.search.sector import TurnPlan
+from backend.search.turn_schedule import turn_schedule
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.silence import chances_by_heading, relative_gain_db
@@ -52,26 +53,26 @@ async def measure(
     wanted: Collection[str],
     plan: TurnPlan | None = None,
 ) -> tuple[Measured, ...]:
-    """One result an emitter; the turn lasts until those with the ids `wanted` were heard well enough. plan: of a
-    mission that turns only as far as needed.
+    """One result an emitter that was listened to; the turn lasts until those with the ids `wanted` were heard well
+    enough, and goes round once for each group of them that the receiver hears at once. plan: of a mission that turns
+    only as far as needed.
 
     Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all.
     """
     ordered_s = equipment.clock.now()
-    shown = TurnShown()
-    progress = asyncio.create_task(_show_progress(equipment, mission, mission_id, listening, place_number, shown))
+    shown, turned = TurnShown(), dict[str, Turned]()
+    sought = set(wanted) or {emitter.emitter_id for emitter in mission.emitters}
+    progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, shown))
     try:
-        waited_for = [emitter for emitter in mission.emitters if emitter.emitter_id in wanted]
-        turned_for = mission.model_copy(update={"emitters": waited_for or mission.emitters})
-        turned = await turn_as_planned(equipment, turned_for, listening, plan, shown)
+        for one in turn_schedule(mission, sought).rounds:
+            done = await turn_as_planned(equipment, mission, one, sought, listening, plan, shown)
+            turned |= {emitter.emitter_id: done for emitter in one.emitters}
     finally:
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)
-    heard = {
-        emitter.emitter_id: listening.of(emitter, turned.began_s, turned.ended_s)
-        for emitter in mission.emitters
-    }
-    pulsed = any(emitter.kind == "pulsed" for emitter in mission.emitters)
+    listened = [(emitter, done) for emitter in mission.emitters if (done := turned.get(emitter.emitter_id)) is not None]
+    heard = {emitter.emitter_id: listening.of(emitter, done.began_s, done.ended_s) for emitter, done in listened}
+    pulsed = any(emitter.kind == "pulsed" for emitter, _ in listened)
     if not any(heard.values()) and not (pulsed and listening.state == "ok"):
         raise ReceiverError(NothingHeardInTurn())
     taken_s = equipment.clock.now() - ordered_s
@@ -81,13 +82,13 @@ async def measure(
             mission,
             emitter,
             heard[emitter.emitter_id],
-            listening.not_given(emitter, turned.began_s, turned.ended_s),
+            listening.not_given(emitter, done.began_s, done.ended_s),
             place_number,
             attempt,
-            turned,
+            done,
             taken_s,
         )
-        for emitter in mission.emitters
+        for emitter, done in listened
     )
     return tuple(await asyncio.gather(*results))
 
@@ -153,7 +154,6 @@ def _unheard(not_given: PulsesNotGiven | None) -> Reason:
 
 async def _show_progress(
     equipment: CraftEquipment,
-    mission: MissionSpec,
     mission_id: str,
     listening: Listening,
     place_number: int,
@@ -161,14 +161,13 @@ async def _show_progress(
 ) -> None:
     """The running sweep to whoever watches: antenna heading and power so far, of each emitter in turn."""
     offset = equipment.pattern.offset_to_nose_deg
-    emitters = cycle(mission.emitters)
-    while True:
+    for number in count():
         await equipment.clock.sleep(PROGRESS_S)
         await asyncio.sleep(0.05)
         if shown.began_s is None:
             continue
         headings = equipment.vehicle.headings(shown.began_s)
-        emitter = next(emitters)
+        emitter = shown.emitters[number % len(shown.emitters)]
         found = listening.of(emitter, shown.began_s, equipment.clock.now())
         samples = [s for s in found if s.detected]
         if len(headings) < 2 or not samples:

@@ -67,6 +67,7 @@ async def heard_on_leg(
                 headings,
             )
             for emitter in wanted
+            if listening.hears(emitter)
         ]
     )
 

@@ -29,6 +29,20 @@ class ReceiverDelivers:
 
 
 @dataclass(frozen=True, slots=True)
+class ReceiverTakesTurns:
+    """rounds: whole turns, one for each group of channels that its band holds. turn_s: of all of them."""
+
+    channels: int
+    rounds: int
+    turn_s: float
+    code: Literal["receiver_takes_turns"] = "receiver_takes_turns"
+    english: ClassVar[Words] = Words(
+        "The receiver works. Its band holds {channels} channels in {rounds} groups, one after another: it goes round once "
+        "for each, which takes {turn_s} at every place, and less once emitters are found."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoSamples:
     code: Literal["no_samples"] = "no_samples"
     english: ClassVar[Words] = Words(
@@ -140,6 +154,7 @@ CheckReason = (
     | RoomToFly
     | StartAllowed
     | ReceiverDelivers
+    | ReceiverTakesTurns
     | NoSamples
     | TagUnheard
     | PatternInUse

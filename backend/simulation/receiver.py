@@ -34,12 +34,14 @@ class EmittersAroundHome:
         seed: int,
         world: Literal["open", "multipath"] = "open",
         emitters: Sequence[SimulatedEmitter] = EMITTERS,
+        band_hz: float | None = None,
     ) -> None:
         self._vehicle = vehicle
         self._clock = clock
         self._seed = seed
         self._world = world
         self._emitters = emitters
+        self._band_hz = band_hz
         self._receiver: SimulatedReceiver | None = None
         self.truth: Mapping[Signal, Place] = {}
         self._transmitting: Mapping[Signal, Emitter] = {}
@@ -73,6 +75,7 @@ class EmittersAroundHome:
             ground_amsl_m=telemetry.home_amsl_m or 0.0,
             telemetry_held_s=max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor),
             headings=self._headings,
+            band_hz=self._band_hz,
         )
 
     def _emitter(self, wanted: SimulatedEmitter) -> Emitter:

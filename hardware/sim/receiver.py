@@ -12,11 +12,15 @@ import numpy as np
 from hardware.channels import check_channels
 from hardware.ports import Clock, ReceiverError
 from hardware.readings import Channel, HeadingSample, PowerSample, Pulses, Telemetry
+from hardware.reasons.channels import BandTooNarrow
 from hardware.reasons.receiver import ReceiverNotOpen, ReceiverUnplugged
 from hardware.sim.beat import Beat
 from hardware.sim.pose_track import PoseTrack
 from hardware.sim.world import Pose, RadioLink, World
 
+OWN_BAND_HZ = 4_000.0
+"""What one emitter takes of a narrow receiver's band."""
+LOCKS_AFTER_S, UNLOCKED_DB = 0.2, 40.0
 DETECTION_DB = 6.0
 """A pulse must stand so far above the noise in the receiver's bandwidth."""
 
@@ -63,6 +67,8 @@ class SimulatedReceiver:
     since a time, spare the reports between two looks. While telemetry is more than `telemetry_held_s` late, an empty
     sample of the last one's time shows that the receiver lives. Nothing is received before the vehicle knows its
     position.
+    band_hz: how wide a band it hears at once, None: any. Such a one delivers, until its tuner has locked, samples that
+    are no signal's.
     `silence(True)` makes the receiver go mute and `unplug()` makes it vanish, for rehearsing faults.
     """
 
@@ -75,6 +81,7 @@ class SimulatedReceiver:
         ground_amsl_m: float = 0.0,
         telemetry_held_s: float = 0.5,
         headings: Callable[[float], Sequence[HeadingSample]] | None = None,
+        band_hz: float | None = None,
     ) -> None:
         self._world = world
         self._telemetry = pose
@@ -83,6 +90,8 @@ class SimulatedReceiver:
         self._ground_amsl_m = ground_amsl_m
         self._telemetry_held_s = telemetry_held_s
         self._headings = headings
+        self._band_hz = band_hz
+        self._locks_s = -math.inf
         self._hearings: list[_Hearing] = []
         self._silent = False
         self._gone = False
@@ -92,7 +101,20 @@ class SimulatedReceiver:
         if self._gone:
             raise ReceiverError(ReceiverUnplugged())
         check_channels(channels)
+        self._check_band(channels)
+        if self._band_hz is not None:
+            self._locks_s = self._clock.now() + LOCKS_AFTER_S
         self._hearings = [_Hearing.of(self._world, channel) for channel in channels]
+
+    def _check_band(self, channels: Sequence[Channel]) -> None:
+        if self._band_hz is None:
+            return
+        first = channels[0].frequency_hz
+        reach_hz = [channel.frequency_hz for channel in channels]
+        needed_hz = max(reach_hz) - min(reach_hz) + OWN_BAND_HZ
+        if needed_hz > self._band_hz:
+            away = tuple(hz for hz in reach_hz if abs(hz - first) + OWN_BAND_HZ > self._band_hz) or (reach_hz[-1],)
+            raise ReceiverError(BandTooNarrow(self._band_hz, needed_hz, away))
 
     async def close(self) -> None:
         """Ends samples(). A receiver that was unplugged stays so."""
@@ -165,6 +187,8 @@ class SimulatedReceiver:
         at the time of the strongest."""
         at_s, channel = hearing.next_s, hearing.channel
         noise_dbm = self._world.front_end.noise_dbm
+        if at_s < self._locks_s:
+            return PowerSample(at_s, channel.frequency_hz, noise_dbm + UNLOCKED_DB, noise_dbm), at_s
         if channel.pulses is None:
             (link,) = hearing.links
             power_dbm, clipped = link.power_dbm(at_s, pose)

@@ -87,7 +87,7 @@ def tally(scene: Scene, periods_s: Sequence[float], seeds: int = 3) -> Tally:
     [
         (Scene(), (1.3, 1.05), 0.9),
         (Scene(strangers_hz=0.3), (1.3, 1.05), 0.9),
-        (Scene(heard=0.6), (1.3, 1.05), 0.85),
+        (Scene(heard=0.6), (1.3, 1.05), 0.75),
         (Scene(clock=0.02, stray_s=0.005), (1.3, 1.24), 0.9),
         (Scene(), (1.0, 2.0), 0.85),
         (Scene(), (1.3, 1.05, 1.6), 0.85),

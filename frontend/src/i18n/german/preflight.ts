@@ -125,6 +125,12 @@ export const preflight = {
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },
   receiver_delivers: { text: "Der Empfänger liefert Messwerte auf {channels|Kanal|Kanälen}.", remedy: "" },
+  receiver_takes_turns: {
+    text:
+      "Der Empfänger arbeitet. In sein Band passen die {channels} Kanäle in {rounds} Gruppen, eine nach der anderen: Für jede dreht " +
+      "es einmal ganz, das dauert an jedem Ort {turn_s}, und weniger, wenn Sender gefunden sind.",
+    remedy: "",
+  },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
     remedy: "Prüfen, ob er angesteckt ist und kein anderes Programm ihn benutzt.",
