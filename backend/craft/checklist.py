@@ -18,7 +18,7 @@ from backend.reasons import Reason, carried, checks
 from backend.reasons.refusals import NoHome
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways
-from backend.search.turn_schedule import heard_at_once, turn_schedule
+from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.search.task import SearchTask, search_task
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
@@ -92,6 +92,8 @@ async def _receiver(mission: MissionSpec, equipment: CraftEquipment, listening: 
     works: Reason = checks.ReceiverDelivers(len(channels_of(mission)))
     if len(groups) > 1:
         works = checks.ReceiverTakesTurns(len(channels_of(mission)), len(groups), turn_schedule(mission).seconds)
+    elif turn_s(mission) > mission.sensor.measurement_time_s:
+        works = checks.TurnTakesLong(turn_s(mission))
     if listening is not None:
         trouble = listening.trouble
         return _fact("receiver", trouble is None, works if trouble is None else trouble)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening, channels_for
-from backend.search.turn_schedule import SLICES, SPARE, Round
+from backend.search.turn_schedule import MOST_TURNS, SLICES, SPARE, Round
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.readings import HeadingSample, PowerSample
 
@@ -18,7 +18,6 @@ SILENT_AFTER = 1.5
 FEWER = 1
 """Pulses that a heading may lack that was listened to for about as long as all of them take: a tag keeps no step with
 the turn, nor the turn, which goes in steps of ten degrees, with the headings."""
-MOST_TURNS = 3
 
 
 async def turn_and_listen(

@@ -43,6 +43,16 @@ class ReceiverTakesTurns:
 
 
 @dataclass(frozen=True, slots=True)
+class TurnTakesLong:
+    turn_s: float
+    code: Literal["turn_takes_long"] = "turn_takes_long"
+    english: ClassVar[Words] = Words(
+        "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
+        "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoSamples:
     code: Literal["no_samples"] = "no_samples"
     english: ClassVar[Words] = Words(
@@ -155,6 +165,7 @@ CheckReason = (
     | StartAllowed
     | ReceiverDelivers
     | ReceiverTakesTurns
+    | TurnTakesLong
     | NoSamples
     | TagUnheard
     | PatternInUse

@@ -10,6 +10,7 @@ A group costs max(360 / rate, SLICES n P SPARE): n pulses of its slowest tag's p
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
@@ -22,6 +23,8 @@ SLICES = 16
 SPARE = 1.1
 """The turn is so much slower than the pulses just need: they do not come in step with the headings."""
 SLOWEST_DEG_S = 2.0
+MOST_TURNS = 3
+"""Of one group, however seldom its pulses come."""
 CHANGE_S = 1.0
 """From the last of one group to the first sample of the next: opening, tuning and settling."""
 FAR_OFF = 2.0
@@ -30,15 +33,17 @@ FAR_OFF = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """Once all the way round. emitters: those that are heard, wanted or not, in the specification's order."""
+    """All the way round for one group. emitters: those that are heard, wanted or not, in the specification's order.
+    times: so often, where pulses come too seldom for the slowest turn."""
 
     emitters: tuple[EmitterSpec, ...]
     rate_deg_s: float
+    times: int = 1
 
     @property
     def seconds(self) -> float:
         """Of the turning alone."""
-        return 360.0 / self.rate_deg_s
+        return self.times * 360.0 / self.rate_deg_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,18 +67,18 @@ def turn_schedule(mission: MissionSpec, wanted: Collection[str] | None = None) -
     for group in groups:
         asked = [emitter for emitter in group if wanted is None or emitter.emitter_id in wanted]
         if asked:
-            rounds.append(Round(group, rate_deg_s(sensor, asked)))
+            rounds.append(_round(sensor, group, asked))
     return TurnSchedule(tuple(rounds))
 
 
-def rate_deg_s(sensor: SensorSpec, emitters: Sequence[EmitterSpec]) -> float:
-    """As specified, but for tags no faster than lets each sixteenth of the circle hear their pulses in one turn."""
-    rate = sensor.turn_rate_deg_s
-    for emitter in emitters:
-        if emitter.kind == "pulsed":
-            turn_s = SLICES * sensor.pulses_per_heading * emitter.pulse_period_s * SPARE
-            rate = min(rate, max(360.0 / turn_s, SLOWEST_DEG_S))
-    return rate
+def _round(sensor: SensorSpec, group: tuple[EmitterSpec, ...], wanted: Sequence[EmitterSpec]) -> Round:
+    """As fast as specified, but for tags no faster than lets each sixteenth of the circle hear their pulses."""
+    slowest_s = max((emitter.pulse_period_s for emitter in wanted if emitter.kind == "pulsed"), default=0.0)
+    needed_s = SLICES * sensor.pulses_per_heading * slowest_s * SPARE
+    rate = min(sensor.turn_rate_deg_s, 360.0 / needed_s if needed_s else math.inf)
+    rate = max(rate, min(SLOWEST_DEG_S, sensor.turn_rate_deg_s))
+    times = math.ceil(needed_s * rate / 360.0 - 1e-6)
+    return Round(group, rate, min(max(times, 1), MOST_TURNS))
 
 
 def heard_at_once(emitters: Sequence[EmitterSpec], band_hz: float | None) -> tuple[tuple[EmitterSpec, ...], ...]:

@@ -226,3 +226,47 @@ def test_emitters_that_share_a_frequency_are_heard_together() -> None:
     others = [EmitterSpec(emitter_id=name, frequency_hz=CARRIER_HZ) for name in ("one", "other")]
     mission = MissionSpec(name="m", area=AREA, emitters=[*others, tag])
     assert channels_of(mission) == (CARRIER, TAG)
+
+
+async def test_a_change_of_channels_leaves_out_and_counts_what_was_heard_before_the_receiver_settled() -> None:
+    clock = ScaledClock(factor=50.0)
+    receiver = HummingReceiver(clock)
+    listening = Listening(receiver, clock, (CARRIER, TAG), silent_after_s=5.0, first=(CARRIER,))
+    listening.start()
+    assert await listening.first_sample(CARRIER_HZ, 5.0)
+    assert receiver.frequencies_hz == [CARRIER_HZ]
+    changed_s = clock.now()
+    humming = receiver.samples
+
+    async def stale_first() -> AsyncIterator[PowerSample]:
+        yield PowerSample(changed_s - 1.0, TAG_HZ, -30.0)
+        async for sample in humming():
+            yield sample
+
+    receiver.samples = stale_first  # type: ignore[method-assign]
+    await listening.hear((TAG,))
+    assert receiver.frequencies_hz == [TAG_HZ]
+    assert (listening.hears(BEACON), listening.hears(EmitterSpec(frequency_hz=TAG_HZ))) == (False, True)
+    assert await listening.first_sample(TAG_HZ, 5.0)
+    assert listening.state == "ok"
+    first = listening.of(EmitterSpec(frequency_hz=TAG_HZ), 0.0, clock.now())[0]
+    assert first.at_s >= changed_s + module.SETTLING_S
+    assert listening.settling_samples >= 1
+    await listening.hear((TAG,))
+    last = listening.last(CARRIER_HZ)
+    assert last is not None
+    assert last.at_s <= changed_s + 0.5, "the carrier is not listened to any more"
+    await listening.stop()
+
+
+async def test_a_change_that_is_called_off_leaves_a_receiver_that_listens() -> None:
+    clock = ScaledClock(factor=50.0)
+    listening = Listening(HummingReceiver(clock), clock, (CARRIER, TAG), silent_after_s=5.0, first=(CARRIER,))
+    listening.start()
+    assert await listening.first_sample(CARRIER_HZ, 5.0)
+    changing = asyncio.create_task(listening.hear((TAG,)))
+    await asyncio.sleep(0)
+    changing.cancel()
+    await asyncio.gather(changing, return_exceptions=True)
+    assert await listening.first_sample(TAG_HZ, 5.0)
+    await listening.stop()

@@ -7,8 +7,8 @@ import pytest
 from equipment import spec
 
 from backend.craft.listening import channel_of
-from backend.craft.sweep_turns import MOST_TURNS, complete
-from backend.search.turn_schedule import SLOWEST_DEG_S, turn_schedule
+from backend.craft.sweep_turns import complete
+from backend.search.turn_schedule import MOST_TURNS, SLOWEST_DEG_S, turn_schedule
 from backend.spec import EmitterSpec, MissionSpec, SensorSpec
 from hardware.readings import HeadingSample, PowerSample, Pulses
 

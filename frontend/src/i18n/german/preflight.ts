@@ -131,6 +131,10 @@ export const preflight = {
       "es einmal ganz, das dauert an jedem Ort {turn_s}, und weniger, wenn Sender gefunden sind.",
     remedy: "",
   },
+  turn_takes_long: {
+    text: "Der Empfänger arbeitet. Die Pulse kommen so selten, dass eine Drehung an jedem Ort bis zu {turn_s} dauert.",
+    remedy: "Weniger Pulse je Richtung verkürzen sie; darauf achten, dass die Batterie für zwei Drehungen reicht.",
+  },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
     remedy: "Prüfen, ob er angesteckt ist und kein anderes Programm ihn benutzt.",
