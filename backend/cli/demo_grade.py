@@ -49,7 +49,8 @@ TruthAt = Callable[[float], Mapping[Signal, Place]]
 
 
 def summary(log: MissionLog, settings: Settings, truths: Mapping[Signal, Place] | TruthAt) -> dict[str, Any]:
-    """What `--json` prints. truths: where each emitter stands, or is at a time; empty when that is not known. An emitter is graded at its last claim, when it was claimed at all, and then by where it was.
+    """What `--json` prints. truths: where each emitter stands, or is at a time; empty when that is not known. An
+    emitter is graded at its last claim, when it was claimed at all, and then by where it was.
 
     `localized` and `outcome` are the mission's. Errors, bearings and sweeps are those of its first emitter; the others
     follow in `emitters` when there are several.

@@ -18,8 +18,8 @@ from backend.reasons import Reason, carried, checks
 from backend.reasons.refusals import NoHome
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways
-from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.search.task import SearchTask, search_task
+from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry

@@ -41,8 +41,8 @@ CATCH_UP_S = 0.005
 class Listening:
     """Keeps the last samples of each channel. A receiver that fails is opened again every second until it answers.
 
-    first: what is listened to until `hear` says otherwise, None: all channels. settling_samples: how many were left out,
-    since the receiver was still changing to its channels.
+    first: what is listened to until `hear` says otherwise, None: all channels. settling_samples: how many were left
+    out, since the receiver was still changing to its channels.
     """
 
     def __init__(
@@ -179,7 +179,8 @@ class Listening:
         return self._ears[emitter.frequency_hz].not_given(begin_s, end_s)
 
     async def heard_until(self, at_s: float) -> None:
-        """Wait for the samples of every channel that is listened to, of the time before `at_s`: a link or a busy machine brings them late.
+        """Wait for the samples of the time before `at_s`, of every channel that is listened to: a link or a busy
+        machine brings them late.
 
         Not for a channel of which nothing new came for as long as it may be silent.
         """

@@ -19,8 +19,8 @@ from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejec
 from backend.ports import SectorShown
 from backend.reasons import Reason, carried
 from backend.search.sector import TurnPlan
-from backend.search.turn_schedule import turn_schedule
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
+from backend.search.turn_schedule import turn_schedule
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.silence import chances_by_heading, relative_gain_db
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg

@@ -28,8 +28,8 @@ from backend.ports import TrackPoint
 from backend.reasons import Reason
 from backend.reasons.flight import WatchBroke
 from backend.search.state import SearchState
-from backend.search.turn_schedule import heard_at_once
 from backend.search.task import SearchTask
+from backend.search.turn_schedule import heard_at_once
 from hardware.reasons.vehicle_news import AutopilotSaid
 
 log = logging.getLogger("crossfix.craft")

@@ -17,8 +17,8 @@ from backend.craft.listening import Listening
 from backend.craft.sweep_turns import turn_and_listen
 from backend.events import TurnFact
 from backend.reasons import Reason, carried
-from backend.search.turn_schedule import Round
 from backend.search.sector import CIRCLE_DEG, TOLERANCE_DEG, GoOn, Stop, TurnPlan, look, turn_fact
+from backend.search.turn_schedule import Round
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
 from hardware.readings import BearingReading, Sweep
@@ -29,8 +29,8 @@ FACING_DEG = 10.0
 
 @dataclass(slots=True)
 class TurnShown:
-    """What whoever watches sees of the turn under way. emitters: those that are listened to. goal_deg: degrees to turn, as decided so far. began_s: None
-    while the nose swings to where the turn begins."""
+    """What whoever watches sees of the turn under way. emitters: those that are listened to. goal_deg: degrees to turn,
+    as decided so far. began_s: None while the nose swings to where the turn begins."""
 
     emitters: tuple[EmitterSpec, ...] = ()
     goal_deg: float = CIRCLE_DEG
@@ -61,8 +61,8 @@ async def turn_as_planned(
     plan: TurnPlan | None,
     shown: TurnShown,
 ) -> Turned:
-    """plan None: the mission turns whole circles and records nothing of why. one, wanted: as in `turn_and_listen`, where
-    the turn is a whole one. Raises VehicleError."""
+    """plan None: the mission turns whole circles and records nothing of why. one, wanted: as in `turn_and_listen`,
+    where the turn is a whole one. Raises VehicleError."""
     shown.emitters = one.emitters
     if plan is None or plan.begin_deg is None:
         shown.began_s = equipment.clock.now()

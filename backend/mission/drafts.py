@@ -17,12 +17,12 @@ from backend.mission.records import Records
 from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable, WasDeleted
 from backend.search.area import centre_of
 from backend.search.band import check_band
-from backend.search.told_apart import check_told_apart
 from backend.search.errors import MissionConflict
 from backend.search.importing import Upload, import_facts, imported_before
 from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
 from backend.search.task import search_task
+from backend.search.told_apart import check_told_apart
 from backend.spec import MissionSpec, Place
 
 log = logging.getLogger("crossfix.mission")

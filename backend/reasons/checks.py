@@ -37,8 +37,8 @@ class ReceiverTakesTurns:
     turn_s: float
     code: Literal["receiver_takes_turns"] = "receiver_takes_turns"
     english: ClassVar[Words] = Words(
-        "The receiver works. Its band holds {channels} channels in {rounds} groups, one after another: it goes round once "
-        "for each, which takes {turn_s} at every place, and less once emitters are found."
+        "The receiver works. Its band holds the {channels} channels in {rounds} groups, one after another: the craft "
+        "goes round once for each, which takes {turn_s} at every place, and less once emitters are found."
     )
 
 

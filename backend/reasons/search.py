@@ -286,9 +286,10 @@ class RhythmsTooAlike:
     needed_s: float
     code: Literal["rhythms_too_alike"] = "rhythms_too_alike"
     english: ClassVar[Words] = Words(
-        "At {frequency_hz} one tag sends every {first_s:3} and another every {second_s:3}: their rhythms are too much alike.",
-        "Tags that stray as much are told apart when their periods differ by {needed_s:3} or more. Look for one of them "
-        "at a time, or state a smaller jitter if theirs is.",
+        "At {frequency_hz} one tag sends every {first_s:3} and another every {second_s:3}: their rhythms are too much "
+        "alike.",
+        "Tags that stray as much are told apart when their periods differ by {needed_s:3} or more. Look for one of "
+        "them at a time, or state a smaller jitter if theirs is.",
     )
 
 

@@ -1,9 +1,9 @@
 """How a craft turns so that each emitter still wanted is heard long enough all around: how fast, and how often.
 
-A receiver whose band does not hold all emitters hears them in groups, a whole turn each. Going round once for two groups
-and changing between them at every heading takes no less: a tag has to be listened to for its pulses at each of SLICES
-headings either way, and every change costs the receiver's settling besides. Only carriers, whose turns are bounded by
-the craft and not by their pulses, could be heard together sooner, by seconds.
+A receiver whose band does not hold all emitters hears them in groups, a whole turn each. Going round once for two
+groups and changing between them at every heading takes no less: a tag has to be listened to for its pulses at each of
+SLICES headings either way, and every change costs the receiver's settling besides. Only carriers, whose turns are
+bounded by the craft and not by their pulses, could be heard together sooner, by seconds.
 
 A group costs max(360 / rate, SLICES n P SPARE): n pulses of its slowest tag's period P at each heading.
 """

@@ -261,9 +261,9 @@ def _heard_apart(
 def _off_schedule(at_s: Floats, own_s: Floats, tag: Pulses) -> tuple[Floats, Floats]:
     """(n,) s from each moment to where the tag was due next to it, and that place's standard deviation.
 
-    own_s: (m,) its pulses, m >= 2, of which the moment itself does not count. Between two of them, the due place m
-    periods after the one and n before the other lies at t_a + (t_b - t_a) m / (m + n) (a Brownian bridge); outside, whole
-    mean periods away from the nearest.
+    own_s: its pulses, two or more, of which the moment itself does not count. Between two of them, the due place m
+    periods after the one and n before the other lies at t_a + (t_b - t_a) m / (m + n) (a Brownian bridge); outside,
+    whole mean periods away from the nearest.
     """
     stray, heard = _stray_s(tag) ** 2, _heard_s(tag) ** 2
     period = _mean_period(own_s, tag)

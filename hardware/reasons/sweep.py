@@ -200,8 +200,8 @@ class PulsesNotGiven:
     code: Literal["pulses_not_given"] = "pulses_not_given"
 
     english: ClassVar[Words] = Words(
-        "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, {unclear} "
-        "that could be more than one's and {strangers} that fit none count for no tag."
+        "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, "
+        "{unclear} that could be more than one's and {strangers} that fit none count for no tag."
     )
 
 
@@ -214,8 +214,8 @@ class RhythmNotHeard:
     code: Literal["rhythm_not_heard"] = "rhythm_not_heard"
 
     english: ClassVar[Words] = Words(
-        "No pulse in the rhythm of this tag was heard; at its frequency there were {given} pulses of other tags, and {left} "
-        "that count for none.",
+        "No pulse in the rhythm of this tag was heard; at its frequency there were {given} pulses of other tags, and "
+        "{left} that count for none.",
         "Measure nearer to it; check its period and the jitter in the mission.",
     )
 

@@ -27,8 +27,8 @@ DETECTION_DB = 6.0
 
 @dataclass(slots=True)
 class _Hearing:
-    """A channel that is listened to. links: to whom it hears. next_s: when its next sample is due. last_s: when its last
-    one was, if any."""
+    """A channel that is listened to. links: to whom it hears. next_s: when its next sample is due. last_s: when its
+    last one was, if any."""
 
     channel: Channel
     links: list[RadioLink]

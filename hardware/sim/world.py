@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from hardware.frame import LocalFrame
 from hardware.readings import Place
-from hardware.sim.beat import Beat
 from hardware.sim.antenna import AntennaField, YagiOnAirframe
+from hardware.sim.beat import Beat
 from hardware.sim.propagation import SPEED_OF_LIGHT_M_S, Fading, FadingProcess, two_ray_gain
 from hardware.sim.walk import Walk
 
@@ -47,9 +47,7 @@ class Emitter:
         """None: it sends without pause."""
         if self.pulse_period_s is None:
             return None
-        return Beat(
-            self.pulse_period_s, self.pulse_width_s, self.pulse_phase_s, self.clock_error, self.pulse_stray_s
-        )
+        return Beat(self.pulse_period_s, self.pulse_width_s, self.pulse_phase_s, self.clock_error, self.pulse_stray_s)
 
     def at(self, at_s: float) -> Emitter:
         """Where it is at that time of the world's clock."""

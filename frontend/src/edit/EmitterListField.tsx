@@ -1,5 +1,6 @@
 // Several emitters as a list to paste into. What is wrong is said line by line, and nothing is taken until all is right.
 import { type MessageKey, t } from "../i18n";
+import type { MissionSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";
 import { badLineWords, LIST, listOf, readList } from "./emitterList";
@@ -13,6 +14,11 @@ function take(text: string): void {
   const kept = Object.fromEntries(Object.entries(now.text).filter(([path]) => path !== LIST && !OWN.includes(path)));
   if (bad.length > 0 || emitters.length === 0) update({ ...now, text: { ...kept, [LIST]: text } });
   else update({ ...now, spec: { ...now.spec, emitters }, text: kept });
+}
+
+function countWords({ emitters, sensor }: MissionSpec): MessageKey {
+  if (emitters.length === 1) return "edit.list.one";
+  return sensor.receiver_band_hz ? "edit.list.inTurn" : "edit.list.count";
 }
 
 export function EmitterListField() {
@@ -37,7 +43,7 @@ export function EmitterListField() {
       <div id="emitter-list-message" class="emitter-list-said">
         {words.length === 0 && (
           <span class="muted" data-testid="emitter-count">
-            {t(spec.emitters.length === 1 ? "edit.list.one" : "edit.list.count", { count: spec.emitters.length })}
+            {t(countWords(spec), { count: spec.emitters.length })}
           </span>
         )}
         {words.map((word) => (

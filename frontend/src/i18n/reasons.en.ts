@@ -1043,7 +1043,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   receiver_takes_turns: {
-    text: "The receiver works. Its band holds {channels} channels in {rounds} groups, one after another: it goes round once for each, which takes {turn_s} at every place, and less once emitters are found.",
+    text: "The receiver works. Its band holds the {channels} channels in {rounds} groups, one after another: the craft goes round once for each, which takes {turn_s} at every place, and less once emitters are found.",
     remedy: "",
   },
   turn_takes_long: {

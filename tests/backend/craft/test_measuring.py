@@ -143,7 +143,9 @@ async def test_a_narrow_receiver_goes_round_once_for_each_group_that_is_wanted()
 async def test_tags_at_one_frequency_have_sweeps_of_their_own_pulses() -> None:
     stage = Stage()
     tags = [
-        EmitterSpec(emitter_id=f"tag-{k}", frequency_hz=150e6, kind="pulsed", pulse_width_s=0.02, pulse_period_s=period_s)
+        EmitterSpec(
+            emitter_id=f"tag-{k}", frequency_hz=150e6, kind="pulsed", pulse_width_s=0.02, pulse_period_s=period_s
+        )
         for k, period_s in enumerate((0.5, 0.4))
     ]
 
@@ -153,7 +155,7 @@ async def test_tags_at_one_frequency_have_sweeps_of_their_own_pulses() -> None:
         due = sorted([began_s + 0.1 + 0.5 * k for k in range(2000)] + [began_s + 0.23 + 0.4 * k for k in range(2500)])
         due = sorted([*due, *strangers[::7]])
         for at_s in due:
-            while stage.clock.now() < at_s:  # noqa: ASYNC110 (the double's clock)
+            while stage.clock.now() < at_s:
                 await stage.clock.sleep(0.1)
             yield PowerSample(at_s, 150e6, -60.0)
 

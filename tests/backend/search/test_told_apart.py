@@ -15,7 +15,11 @@ from backend.spec import EmitterSpec
 
 def tag(period_s: float, frequency_hz: float = 150e6, **changes: Any) -> EmitterSpec:
     return EmitterSpec(
-        emitter_id=f"tag-{period_s * 1000:.0f}-{frequency_hz:.0f}", frequency_hz=frequency_hz, kind="pulsed", pulse_period_s=period_s, **changes
+        emitter_id=f"tag-{period_s * 1000:.0f}-{frequency_hz:.0f}",
+        frequency_hz=frequency_hz,
+        kind="pulsed",
+        pulse_period_s=period_s,
+        **changes,
     )
 
 

@@ -16,7 +16,10 @@ REACH_HZ = {"carrier": 3_200.0, "pulsed": 2_000.0}
 def emitter(number: int, frequency_hz: float, period_s: float | None = None) -> EmitterSpec:
     kind = "carrier" if period_s is None else "pulsed"
     return EmitterSpec(
-        emitter_id=f"e-{number}", frequency_hz=frequency_hz, kind=kind, pulse_period_s=1.3 if period_s is None else period_s
+        emitter_id=f"e-{number}",
+        frequency_hz=frequency_hz,
+        kind=kind,
+        pulse_period_s=1.3 if period_s is None else period_s,
     )
 
 

@@ -26,8 +26,9 @@ def tags(*periods_s: float) -> list[Pulses]:
 
 @dataclass(frozen=True)
 class Scene:
-    """seconds: of listening. heard: share of the pulses that are, where the antenna looks at the tag; it turns once in 46
-    s and hears less behind. clock: by which share the tags' clocks are off at most. stray_s: of each pulse at most."""
+    """seconds: of listening. heard: share of the pulses that are, where the antenna looks at the tag, which turns once
+    in 46 s and hears less behind. clock: by which share the tags' clocks are off at most. stray_s: of each pulse, at
+    most."""
 
     seconds: float = 120.0
     heard: float = 0.95
@@ -117,7 +118,9 @@ def test_hardly_a_pulse_goes_to_another_tag_whatever_the_rhythms(
     periods_s = (period_s, period_s + apart_s)
     at_s, sent = Scene(heard=heard, strangers_hz=strangers_hz).drawn(seed, periods_s)
     found = whose_pulses(at_s, tags(*periods_s))
-    wrong = sum(isinstance(by, int) and isinstance(whose, int) and by != whose for by, whose in zip(sent, found))
+    wrong = sum(
+        isinstance(by, int) and isinstance(whose, int) and by != whose for by, whose in zip(sent, found, strict=True)
+    )
     assert len(found) == len(at_s)
     assert wrong <= 0.05 * len(at_s)
 
@@ -178,4 +181,6 @@ def test_what_is_older_than_is_kept_is_forgotten_and_the_rhythm_is_not() -> None
     own = sent[-len(sorter.at_s) :]
     right = sum(by == whose for by, whose in zip(own, sorter.whose(), strict=True))
     assert right >= 0.8 * len(own)
-    assert not any(isinstance(w, int) and isinstance(b, int) and b != w for b, w in zip(own, sorter.whose()))
+    assert not any(
+        isinstance(w, int) and isinstance(b, int) and b != w for b, w in zip(own, sorter.whose(), strict=True)
+    )

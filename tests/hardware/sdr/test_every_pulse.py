@@ -17,7 +17,7 @@ TAGS = (Pulses(WIDTH_S, 1.3), Pulses(WIDTH_S, 1.05))
 
 
 def stream(trains: dict[float, np.ndarray], seconds: float, seed: int = 1) -> np.ndarray:
-    """Pulses that begin at these times, by the tone's offset (Hz) from the centre, -40 dB, in noise of -90 dB a hertz."""
+    """Pulses of -40 dB that begin at these times, by the offset (Hz) of the tone, in noise of -90 dB a hertz."""
     rng = np.random.default_rng(seed)
     t = np.arange(int(seconds * RATE_HZ)) / RATE_HZ
     samples = np.sqrt(1e-9 * RATE_HZ / 2.0) * (rng.normal(size=t.size) + 1j * rng.normal(size=t.size))
