@@ -59,23 +59,25 @@ def whose_pulses(at_s: Sequence[float], tags: Sequence[Pulses]) -> list[Whose]:
 
 @dataclass(slots=True)
 class RhythmSorter:
-    """The same, pulse by pulse; one takes about half a millisecond. kept_s: pulses older than that are forgotten."""
+    """The same, pulse by pulse. kept_s: pulses older than that are forgotten."""
 
     tags: Sequence[Pulses]
     kept_s: float = math.inf
     at_s: list[float] = field(default_factory=list[float], init=False)
+    _assumed: _Assumed = field(init=False)
     _beam: _Beam = field(init=False)
     _steps: list[_Step] = field(default_factory=list["_Step"], init=False)
 
     def __post_init__(self) -> None:
-        self._beam = _Beam.begun(self.tags)
+        self._assumed = _Assumed.of(self.tags)
+        self._beam = _Beam.begun(self._assumed)
 
     def take(self, at_s: float) -> None:
         """The next pulse; one from before the last (the clock was set) begins anew."""
         if self.at_s and at_s < self.at_s[-1]:
-            self.at_s, self._steps, self._beam = [], [], _Beam.begun(self.tags)
+            self.at_s, self._steps, self._beam = [], [], _Beam.begun(self._assumed)
         self.at_s.append(at_s)
-        self._beam, step = self._beam.after(at_s, self.tags)
+        self._beam, step = self._beam.after(at_s, self._assumed)
         self._steps.append(step)
         if at_s - self.at_s[0] > 2.0 * self.kept_s:
             keep = int(np.searchsorted(self.at_s, at_s - self.kept_s))
@@ -95,11 +97,56 @@ class RhythmSorter:
 
 
 @dataclass(frozen=True, slots=True)
+class _Assumed:
+    """(k,) of the tags: nominal period, and the variances of an interval's straying, of a pulse's time as it is heard,
+    of the period's change from one pulse to the next, and of the period at first. begins: (k,) log likelihood, against
+    a stranger's, that a pulse is the first of a tag. heard_first: log(HEARD / strangers a second). miss: log likelihood
+    of a pulse that was not heard."""
+
+    nominal: Floats
+    stray: Floats
+    heard: Floats
+    wander: Floats
+    clock: Floats
+    begins: Floats
+    heard_first: float
+    miss: float
+
+    @classmethod
+    def of(cls, tags: Sequence[Pulses]) -> _Assumed:
+        """What follows from what they send."""
+        nominal = np.array([tag.period_s for tag in tags])
+        heard_first = math.log(HEARD / _strangers_hz(tags))
+        return cls(
+            nominal,
+            np.array([_stray_s(tag) for tag in tags]) ** 2,
+            np.array([_heard_s(tag) for tag in tags]) ** 2,
+            (DRIFT * nominal) ** 2,
+            np.array([tag.jitter_s / 2.0 for tag in tags]) ** 2,
+            heard_first - np.log(nominal),
+            heard_first,
+            math.log(1.0 - HEARD),
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class _Step:
     """Of each hypothesis after a pulse: the one it came from, and the tag that the pulse was given to (-1: none)."""
 
     parent: NDArray[np.int64]
     choice: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class _Due:
+    """(h, k) of each hypothesis and tag at a pulse. known: whether the phase still is. periods: since its last pulse.
+    off: s from where it was due. variance: of that place; total: and of the pulse's time as it is heard."""
+
+    known: NDArray[np.bool_]
+    periods: Floats
+    off: Floats
+    variance: Floats
+    total: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,89 +166,86 @@ class _Beam:
     missed: NDArray[np.int64]
 
     @classmethod
-    def begun(cls, tags: Sequence[Pulses]) -> _Beam:
+    def begun(cls, assumed: _Assumed) -> _Beam:
         """Nothing was heard yet."""
-        shape = (1, len(tags))
-        period = np.array([[tag.period_s for tag in tags]])
-        return cls(
-            np.zeros(1),
-            np.zeros(shape, dtype=bool),
-            np.zeros(shape),
-            period,
-            np.zeros((*shape, 3)),
-            np.zeros(shape, dtype=np.int64),
-        )
+        shape = (1, assumed.nominal.size)
+        unknown, none = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=np.int64)
+        return cls(np.zeros(1), unknown, np.zeros(shape), assumed.nominal[None, :].copy(), np.zeros((*shape, 3)), none)
 
-    def after(self, at_s: float, tags: Sequence[Pulses]) -> tuple[_Beam, _Step]:
+    def after(self, at_s: float, assumed: _Assumed) -> tuple[_Beam, _Step]:
         """Every hypothesis with the new pulse given to nobody and to each tag; the likeliest of these."""
-        nominal = np.array([tag.period_s for tag in tags])
-        stray = np.array([_stray_s(tag) for tag in tags]) ** 2
-        heard = np.array([_heard_s(tag) for tag in tags]) ** 2
-        wander = (DRIFT * nominal) ** 2
+        due, tags = self._due(at_s, assumed), assumed.nominal.size
+        missed = self._missed(at_s, due)
+        base = self.score + assumed.miss * np.where(due.known, missed - self.missed, 0).sum(axis=1)
 
-        since = at_s - self.last
-        periods = np.maximum(np.rint(since / self.period), 1.0)
-        # x = (last, period), x' = F^m x, P' = F^m P F^mT + m Q
-        variance = self.cov[..., 0] + 2.0 * periods * self.cov[..., 1] + periods**2 * self.cov[..., 2]
-        variance += periods * stray + periods**3 * wander / 3.0
-        known = self.known & (np.sqrt(variance) < LOST * nominal)
-        off = since - periods * self.period
-        total = variance + heard
-        fits = -0.5 * (off**2 / total + np.log(2.0 * math.pi * total))
-
-        # pulses that were due and not heard by now, as far as they count
-        due = np.where(known, np.floor((since - 3.0 * np.sqrt(total)) / self.period), 0.0)
-        missed = np.clip(due, self.missed, COUNTED_MISSES).astype(np.int64)
-        miss = math.log(1.0 - HEARD)
-        base = self.score + miss * np.where(known, missed - self.missed, 0).sum(axis=1)
-
-        strangers = _strangers_hz(tags)
-        begins = np.log(HEARD / nominal / strangers)
-        gain = np.where(known, math.log(HEARD / strangers) + fits, begins)
+        fits = -0.5 * (due.off**2 / due.total + np.log(2.0 * math.pi * due.total))
+        gain = np.where(due.known, assumed.heard_first + fits, assumed.begins)
         # the pulse itself is not one that was missed
-        gain = np.where(known & (missed >= periods) & (missed > self.missed), gain - miss, gain)
-        anew = np.where(known, begins + math.log(BEGINS_ANEW), -np.inf)
+        itself = due.known & (missed >= due.periods) & (missed > self.missed)
+        gain = np.where(itself, gain - assumed.miss, gain)
+        anew = np.where(due.known, assumed.begins + math.log(BEGINS_ANEW), -np.inf)
         options = np.concatenate([np.zeros((base.size, 1)), gain, anew], axis=1) + base[:, None]
+
         best = np.argsort(-options, axis=None, kind="stable")[:BEAM]
         parent, option = np.unravel_index(best, options.shape)
-        tag = np.where(option == 0, -1, (option - 1) % len(tags))
-        followed = (option > 0) & (option <= len(tags)) & known[parent, tag]
-
-        state = _Beam(
-            options.ravel()[best] - options.ravel()[best[0]],
-            known[parent],
+        tag = np.where(option == 0, -1, (option - 1) % tags)
+        score = options.ravel()[best]
+        after = _Beam(
+            score - score[0],
+            due.known[parent],
             self.last[parent],
             self.period[parent],
             self.cov[parent],
-            np.where(known, missed, 0)[parent],
+            np.where(due.known, missed, 0)[parent],
         )
-        rows = np.flatnonzero(option > 0)
-        which, came = tag[rows], parent[rows]
-        state.known[rows, which] = True
-        state.missed[rows, which] = 0
-        begun, go_on = rows[~followed[rows]], rows[followed[rows]]
-        at_tag = tag[begun]
-        state.last[begun, at_tag], state.period[begun, at_tag] = at_s, nominal[at_tag]
-        clock = np.array([tag.jitter_s / 2.0 for tag in tags]) ** 2
-        state.cov[begun, at_tag] = np.stack([heard[at_tag], np.zeros(begun.size), clock[at_tag]], axis=-1)
-        which, came = tag[go_on], parent[go_on]
-        m, total_there = periods[came, which], total[came, which]
-        cov = self.cov[came, which]
-        cross = cov[:, 1] + m * cov[:, 2] + 0.5 * m**2 * wander[which]
-        own = cov[:, 2] + m * wander[which]
-        gain_last, gain_period = variance[came, which] / total_there, cross / total_there
-        innovation = off[came, which]
-        state.last[go_on, which] = self.last[came, which] + m * self.period[came, which] + gain_last * innovation
-        state.period[go_on, which] = self.period[came, which] + gain_period * innovation
-        state.cov[go_on, which] = np.stack(
-            [
-                (1.0 - gain_last) * variance[came, which],
-                (1.0 - gain_last) * cross,
-                own - gain_period * cross,
-            ],
-            axis=-1,
+        given = np.flatnonzero(option > 0)
+        follows = (option[given] <= tags) & due.known[parent[given], tag[given]]
+        after.known[given, tag[given]] = True
+        after.missed[given, tag[given]] = 0
+        after._begin(at_s, given[~follows], tag[given[~follows]], assumed)
+        after._follow(self, due, given[follows], tag[given[follows]], parent[given[follows]], assumed)
+        return after, _Step(parent.astype(np.int64), tag.astype(np.int64))
+
+    def _due(self, at_s: float, assumed: _Assumed) -> _Due:
+        """x = (last, period), x' = F^m x, P' = F^m P F^mT + Q(m)."""
+        since = at_s - self.last
+        m = np.maximum(np.rint(since / self.period), 1.0)
+        variance = self.cov[..., 0] + 2.0 * m * self.cov[..., 1] + m**2 * self.cov[..., 2]
+        variance += m * assumed.stray + m**3 * assumed.wander / 3.0
+        known = self.known & (np.sqrt(variance) < LOST * assumed.nominal)
+        return _Due(known, m, since - m * self.period, variance, variance + assumed.heard)
+
+    def _missed(self, at_s: float, due: _Due) -> NDArray[np.int64]:
+        """(h, k) pulses that were due and not heard by now, as far as they count."""
+        passed = np.floor((at_s - self.last - 3.0 * np.sqrt(due.total)) / self.period)
+        return np.clip(np.where(due.known, passed, 0.0), self.missed, COUNTED_MISSES).astype(np.int64)
+
+    def _begin(self, at_s: float, rows: NDArray[np.int64], tag: NDArray[np.int64], assumed: _Assumed) -> None:
+        """The pulse is a tag's first, or first again."""
+        self.last[rows, tag], self.period[rows, tag] = at_s, assumed.nominal[tag]
+        self.cov[rows, tag] = np.stack([assumed.heard[tag], np.zeros(rows.size), assumed.clock[tag]], axis=-1)
+
+    def _follow(
+        self,
+        before: _Beam,
+        due: _Due,
+        rows: NDArray[np.int64],
+        tag: NDArray[np.int64],
+        parent: NDArray[np.int64],
+        assumed: _Assumed,
+    ) -> None:
+        """The pulse is a tag's next: K = P' H^T / total, x'' = x' + K off, P'' = (I - K H) P', H = (1, 0)."""
+        m, cov = due.periods[parent, tag], before.cov[parent, tag]
+        cross = cov[:, 1] + m * cov[:, 2] + 0.5 * m**2 * assumed.wander[tag]
+        own = cov[:, 2] + m * assumed.wander[tag]
+        variance, total, off = due.variance[parent, tag], due.total[parent, tag], due.off[parent, tag]
+        to_last, to_period = variance / total, cross / total
+        period = before.period[parent, tag]
+        self.last[rows, tag] = before.last[parent, tag] + m * period + to_last * off
+        self.period[rows, tag] = period + to_period * off
+        self.cov[rows, tag] = np.stack(
+            [(1.0 - to_last) * variance, (1.0 - to_last) * cross, own - to_period * cross], axis=-1
         )
-        return state, _Step(parent.astype(np.int64), tag.astype(np.int64))
 
 
 def _strangers_hz(tags: Sequence[Pulses]) -> float:
