@@ -114,6 +114,8 @@ class Settings(BaseSettings):
     emitters: tuple[str, ...] = ()
     """Simulated emitters besides those of the presets: MHZ, MHZ/PULSE_PERIOD_S, and ,GAIT:SPEED behind either; a JSON
     list in the environment."""
+    simulated_band_hz: float | None = Field(default=None, ge=5_000, le=1e9, allow_inf_nan=False)
+    """How wide a band the simulated receiver hears at once; without it, any."""
     time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
     home_lat_deg: float = Field(default=50.6234, ge=-80, le=80, allow_inf_nan=False)

@@ -215,6 +215,9 @@ class SensorSpec(Model):
     """A fielded system's flights had 9 outliers among 93 bearings."""
     measurement_time_s: Positive = 30.0
     turn_rate_deg_s: float = Field(default=30.0, ge=5, le=90)
+    receiver_band_hz: float | None = Field(default=None, ge=1000, le=1e9, allow_inf_nan=False)
+    """How wide a band the receiver hears at once; None: as wide as all emitters need. Of a narrower one they are heard
+    in groups, a turn each."""
     pulses_per_heading: int = Field(default=2, ge=1, le=20)
     """A sweep of a pulsed tag is complete when each sixteenth of the circle was listened to for this many pulses."""
     minimum_quality: float = Field(default=0.7, ge=0, le=1)

@@ -109,7 +109,7 @@ def _receiver(
     """Raises ReceiverError for a device of no known form."""
     named = _receiver_name(settings)
     if named == "simulated":
-        return EmittersAroundHome(vehicle, clock, settings.seed, settings.world, emitters)
+        return EmittersAroundHome(vehicle, clock, settings.seed, settings.world, emitters, settings.simulated_band_hz)
     if named == "payload":
         if payload is None:
             raise ReceiverError(PayloadTokensMissing())

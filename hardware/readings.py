@@ -143,10 +143,19 @@ class Pulses:
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """What a receiver listens to: a carrier, or a tag's pulses, at the emitter's nominal frequency."""
+    """What a receiver listens to: a carrier, or a tag's pulses, at the emitter's nominal frequency.
+
+    others: the pulses of further tags that send there; the receiver then tells of every pulse, whoever sent it.
+    """
 
     frequency_hz: float
     pulses: Pulses | None = None
+    others: tuple[Pulses, ...] = ()
+
+    @property
+    def rhythms(self) -> tuple[Pulses, ...]:
+        """Of every tag that is listened to here; none of a carrier."""
+        return () if self.pulses is None else (self.pulses, *self.others)
 
 
 @dataclass(frozen=True, slots=True)

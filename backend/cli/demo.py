@@ -34,6 +34,8 @@ TAG_SENSOR = {"measurement_time_s": 45.0, "sigma_deg": 9.0}
 GAITS: tuple[Literal["animal", "walking", "drifting"], ...] = ("animal", "walking", "drifting")
 SPACING_HZ = 100_000.0
 """Between the frequencies of several emitters."""
+PERIODS_S = (1.3, 1.05, 1.6, 0.85)
+"""Of tags at one frequency."""
 
 
 def movement(kind: str | None, pace: float) -> MovementSpec:
@@ -47,20 +49,31 @@ def movement(kind: str | None, pace: float) -> MovementSpec:
 
 
 def sought(
-    first: EmitterSpec, count: int, moving: MovementSpec | None = None, most_important: int | None = None
+    first: EmitterSpec,
+    count: int,
+    moving: MovementSpec | None = None,
+    most_important: int | None = None,
+    by_rhythm: bool = False,
 ) -> list[EmitterSpec]:
-    """Emitters like the first, each at a frequency of its own. most_important: the number of the one to look for first,
-    None: all are alike. Raises ValueError for a number that none has."""
+    """Emitters like the first, each at a frequency of its own; by_rhythm: tags at one, each with a period of its own.
+    most_important: the number of the one to look for first, None: all are alike. Raises ValueError for a number that
+    none has, for more tags at one frequency than there are periods, and for carriers there."""
     if most_important is not None and most_important > count:
         raise ValueError(f"--first {most_important}: there are {count} emitters; name one of them, or raise --emitters")
+    if by_rhythm and (first.kind != "pulsed" or count > len(PERIODS_S)):
+        raise ValueError(f"--by-rhythm is for 2 to {len(PERIODS_S)} tags: add --tag, and --emitters")
     return [
         first.model_copy(
             update={
                 "emitter_id": f"emitter-{number}",
-                "frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ,
                 "movement": moving or MovementSpec(),
                 "priority": 1 if number == most_important else None,
             }
+            | (
+                {"pulse_period_s": PERIODS_S[number - 1]}
+                if by_rhythm
+                else {"frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ}
+            )
         )
         for number in range(1, count + 1)
     ]
@@ -105,6 +118,14 @@ def demo(
     most_important: Annotated[
         int | None, typer.Option("--first", min=1, help="With --emitters: the number of the one to look for first.")
     ] = None,
+    by_rhythm: Annotated[
+        bool,
+        typer.Option("--by-rhythm", help="With --tag and --emitters: at one frequency, each with a period of its own."),
+    ] = False,
+    band: Annotated[
+        float | None,
+        typer.Option(min=5.0, help="The simulated receiver hears so many kHz at once, and the mission says so."),
+    ] = None,
     moves: Annotated[
         str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")
     ] = None,
@@ -135,11 +156,12 @@ def demo(
             time_factor=speedup if speedup is not None else (10.0 if vehicle is None else 1.0),
             seed=seed,
             world=world,
+            simulated_band_hz=None if band is None else band * 1000.0,
         )
     except ValueError as error:
         stop(error)
     try:
-        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace), most_important)
+        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace), most_important, by_rhythm)
         result = asyncio.run(_demo(settings, headless, json_, mend_failsafes, tag, looked_for))
     except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
         stop(error)
@@ -162,7 +184,7 @@ async def _demo(
 ) -> dict[str, Any]:
     changes: Mapping[str, Any] = {
         "emitters": [emitter.model_dump(mode="json") for emitter in emitters],
-        "sensor": TAG_SENSOR if tag else {},
+        "sensor": (TAG_SENSOR if tag else {}) | {"receiver_band_hz": settings.simulated_band_hz},
         "localization": {"follow": any(emitter.movement.kind != "still" for emitter in emitters)},
     }
     async with running_server(settings, emitters=simulated(emitters)) as running:

@@ -22,6 +22,7 @@ from backend.events import (
     SweepRejected,
 )
 from backend.settings import Settings
+from backend.simulation.emitters import Signal
 from backend.spec import EmitterSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
@@ -44,13 +45,13 @@ class MissionLog:
         return [event for event in events if emitter_id is None or getattr(event, "emitter_id", None) == emitter_id]
 
 
-TruthAt = Callable[[float], Mapping[float, Place]]
-"""Where each emitter is at a time (UTC epoch seconds), by its frequency; empty when that is not known."""
+TruthAt = Callable[[float], Mapping[Signal, Place]]
+"""Where each emitter is at a time (UTC epoch seconds); empty when that is not known."""
 
 
-def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place] | TruthAt) -> dict[str, Any]:
-    """What `--json` prints. truths: where each emitter stands, by its frequency, or is at a time; empty when that is
-    not known. An emitter is graded at its last claim, when it was claimed at all, and then by where it was.
+def summary(log: MissionLog, settings: Settings, truths: Mapping[Signal, Place] | TruthAt) -> dict[str, Any]:
+    """What `--json` prints. truths: where each emitter stands, or is at a time; empty when that is not known. An
+    emitter is graded at its last claim, when it was claimed at all, and then by where it was.
 
     `localized` and `outcome` are the mission's. Errors, bearings and sweeps are those of its first emitter; the others
     follow in `emitters` when there are several.
@@ -59,7 +60,7 @@ def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place] |
     emitters = log.all(MissionDrafted)[-1].spec.emitters
     truth_at: TruthAt = truths if callable(truths) else lambda _: truths
     graded = [_graded(log, emitter, truth_at) for emitter in emitters]
-    name, frequency = emitters[0].emitter_id, emitters[0].frequency_hz
+    name, signal = emitters[0].emitter_id, _signal(emitters[0])
     bearings = log.all(BearingMeasured, name)
     result = {
         "localized": ended.outcome == "localized",
@@ -70,7 +71,7 @@ def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place] |
         "bearing_errors_deg": [
             _bearing_error(b, truth)
             for b in bearings
-            if (truth := truth_at(b.taken_at_s or 0.0).get(frequency)) is not None
+            if (truth := truth_at(b.taken_at_s or 0.0).get(signal)) is not None
         ],
         "bearing_sigmas_deg": [b.sigma_deg for b in bearings],
         "rejected_sweeps": len(log.all(SweepRejected, name)),
@@ -98,7 +99,7 @@ def _graded(log: MissionLog, emitter: EmitterSpec, truth_at: TruthAt) -> dict[st
     claims = [one for one in beliefs if moves and one[0].localized] or beliefs
     last, at_s = claims[-1] if claims else (None, 0.0)
     estimate = None if last is None else last.estimate
-    truth = truth_at(at_s).get(emitter.frequency_hz)
+    truth = truth_at(at_s).get(_signal(emitter))
     error_m = in_c95 = None
     if estimate is not None and truth is not None:
         error_m = math.hypot(*LocalFrame(truth).to_enu(Place(estimate.lat, estimate.lon)))
@@ -122,6 +123,10 @@ def _found_s(log: MissionLog, beliefs: Sequence[tuple[BeliefUpdated, float]]) ->
     for belief, at_s in beliefs:
         since_s = (at_s if since_s is None else since_s) if belief.localized else None
     return None if began_s is None or since_s is None else since_s - began_s
+
+
+def _signal(emitter: EmitterSpec) -> Signal:
+    return Signal(emitter.frequency_hz, emitter.pulse_period_s if emitter.kind == "pulsed" else None)
 
 
 def _bearing_error(measured: BearingMeasured, truth: Place) -> float:

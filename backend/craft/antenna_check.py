@@ -44,8 +44,8 @@ async def check_by_hand(
     if here is None:
         raise MissionInputError(NoPosition(), "emitter")
     known = _place(emitter, here)
-    channel = channel_of(mission.emitters[0])
-    listening = Listening(equipment.receiver, equipment.clock, (channel,), mission.timers.receiver_silent_s)
+    first = mission.emitters[0]
+    listening = Listening(equipment.receiver, equipment.clock, (channel_of(first),), mission.timers.receiver_silent_s)
     listening.start()
     began_s = equipment.clock.now()
     try:
@@ -55,7 +55,7 @@ async def check_by_hand(
             if turned_deg(np.array([h.heading_deg for h in headings])) >= WHOLE_TURN_DEG:
                 break
         await equipment.clock.sleep(LOOK_S)
-        samples = [s for s in listening.between(began_s, equipment.clock.now(), channel.frequency_hz) if s.detected]
+        samples = [s for s in listening.of(first, began_s, equipment.clock.now()) if s.detected]
         headings = equipment.vehicle.headings(began_s)
         trouble = listening.trouble
     finally:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
 
 from backend.craft.equipment import CraftEquipment
 from backend.craft.ground_check import ground_checks, knows_nothing
-from backend.craft.listening import Listening, channels_of
+from backend.craft.listening import Listening, channels_for, channels_of
 from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
 from backend.craft.return_altitude import least_return_altitude_m, return_altitude_check
@@ -18,6 +19,7 @@ from backend.reasons.refusals import NoHome
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways
 from backend.search.task import SearchTask, search_task
+from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
@@ -86,17 +88,30 @@ async def checklist(
 
 
 async def _receiver(mission: MissionSpec, equipment: CraftEquipment, listening: Listening | None) -> CheckFact:
-    channels = channels_of(mission)
-    works = checks.ReceiverDelivers(len(channels))
+    groups = heard_at_once(mission.emitters, mission.sensor.receiver_band_hz)
+    works: Reason = checks.ReceiverDelivers(len(channels_of(mission)))
+    if len(groups) > 1:
+        works = checks.ReceiverTakesTurns(len(channels_of(mission)), len(groups), turn_schedule(mission).seconds)
+    elif turn_s(mission) > mission.sensor.measurement_time_s:
+        works = checks.TurnTakesLong(turn_s(mission))
     if listening is not None:
         trouble = listening.trouble
         return _fact("receiver", trouble is None, works if trouble is None else trouble)
+    for group in groups:
+        wrong = await _wrong_with(mission, equipment, channels_for(group))
+        if wrong is not None:
+            return wrong
+    return _fact("receiver", True, works)
+
+
+async def _wrong_with(mission: MissionSpec, equipment: CraftEquipment, channels: Sequence[Channel]) -> CheckFact | None:
+    """None: every channel of these was heard."""
     trial = Listening(equipment.receiver, equipment.clock, channels, mission.timers.receiver_silent_s)
     trial.start()
     try:
         unheard = [channel for channel in channels if not await _heard(trial, channel)]
         if not unheard:
-            return _fact("receiver", True, works)
+            return None
         silent = next((channel for channel in unheard if trial.last(channel.frequency_hz) is None), None)
         if silent is None:
             return _fact("receiver", False, checks.TagUnheard(unheard[0].frequency_hz), blocking=False)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
-from itertools import cycle
+from dataclasses import dataclass, replace
+from itertools import count
 from statistics import fmean
 from uuid import uuid4
 
@@ -17,16 +17,17 @@ from backend.craft.listening import Listening
 from backend.craft.sector_turns import Turned, TurnShown, turn_as_planned
 from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejected
 from backend.ports import SectorShown
-from backend.reasons import carried
+from backend.reasons import Reason, carried
 from backend.search.sector import TurnPlan
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
+from backend.search.turn_schedule import turn_schedule
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.silence import chances_by_heading, relative_gain_db
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
 from hardware.ports import ReceiverError, VehicleError
 from hardware.readings import PowerSample, Sweep
 from hardware.reasons.receiver import NothingHeardInTurn
-from hardware.reasons.sweep import NoPulseHeard
+from hardware.reasons.sweep import NoPulseHeard, PulsesNotGiven, RhythmNotHeard
 from hardware.reasons.vehicle import PositionLost
 from hardware.reasons.vehicle_news import ClockRateOdd
 
@@ -52,32 +53,42 @@ async def measure(
     wanted: Collection[str],
     plan: TurnPlan | None = None,
 ) -> tuple[Measured, ...]:
-    """One result an emitter; the turn lasts until those with the ids `wanted` were heard well enough. plan: of a
-    mission that turns only as far as needed.
+    """One result an emitter that was listened to; the turn lasts until those with the ids `wanted` were heard well
+    enough, and goes round once for each group of them that the receiver hears at once. plan: of a mission that turns
+    only as far as needed.
 
     Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all.
     """
     ordered_s = equipment.clock.now()
-    shown = TurnShown()
-    progress = asyncio.create_task(_show_progress(equipment, mission, mission_id, listening, place_number, shown))
+    shown, turned = TurnShown(), dict[str, Turned]()
+    sought = set(wanted) or {emitter.emitter_id for emitter in mission.emitters}
+    progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, shown))
     try:
-        waited_for = [emitter for emitter in mission.emitters if emitter.emitter_id in wanted]
-        turned_for = mission.model_copy(update={"emitters": waited_for or mission.emitters})
-        turned = await turn_as_planned(equipment, turned_for, listening, plan, shown)
+        for one in turn_schedule(mission, sought).rounds:
+            done = await turn_as_planned(equipment, mission, one, sought, listening, plan, shown)
+            turned |= {emitter.emitter_id: done for emitter in one.emitters}
     finally:
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)
-    heard = {
-        emitter.emitter_id: listening.between(turned.began_s, turned.ended_s, emitter.frequency_hz)
-        for emitter in mission.emitters
-    }
-    pulsed = any(emitter.kind == "pulsed" for emitter in mission.emitters)
+    listened = [(emitter, done) for emitter in mission.emitters if (done := turned.get(emitter.emitter_id)) is not None]
+    heard = {emitter.emitter_id: listening.of(emitter, done.began_s, done.ended_s) for emitter, done in listened}
+    pulsed = any(emitter.kind == "pulsed" for emitter, _ in listened)
     if not any(heard.values()) and not (pulsed and listening.state == "ok"):
         raise ReceiverError(NothingHeardInTurn())
     taken_s = equipment.clock.now() - ordered_s
     results = (
-        _result(equipment, mission, emitter, heard[emitter.emitter_id], place_number, attempt, turned, taken_s)
-        for emitter in mission.emitters
+        _result(
+            equipment,
+            mission,
+            emitter,
+            heard[emitter.emitter_id],
+            listening.not_given(emitter, done.began_s, done.ended_s),
+            place_number,
+            attempt,
+            done,
+            taken_s,
+        )
+        for emitter, done in listened
     )
     return tuple(await asyncio.gather(*results))
 
@@ -87,12 +98,13 @@ async def _result(
     mission: MissionSpec,
     emitter: EmitterSpec,
     samples: list[PowerSample],
+    not_given: PulsesNotGiven | None,
     place_number: int,
     attempt: int,
     turned: Turned,
     taken_s: float,
 ) -> Measured:
-    """taken_s: from the order to the bearing."""
+    """not_given: pulses at its frequency that nobody knows whose they are. taken_s: from the order to the bearing."""
     sweep_id = str(uuid4())
     source = CraftSource(craft_id=equipment.craft_id)
     taken = Taken(emitter.emitter_id, source, sweep_id, place_number, attempt, turned.turn)
@@ -119,21 +131,29 @@ async def _result(
         if telemetry.position is None:
             raise VehicleError(PositionLost()) from error
         unheard = emitter.kind == "pulsed" and not any(sample.detected for sample in samples)
-        reason = NoPulseHeard() if unheard else carried(error.reason)
-        told = silence if unheard and samples else None
+        reason = _unheard(not_given) if unheard else carried(error.reason)
+        told = silence if unheard and samples and not_given is None else None
         return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason, silence=told))
     sweep = turned.as_turned(sweep)
     if telemetry.odd_clock_rate is not None:  # it became so during the turn
         odd = ClockRateOdd(telemetry.odd_clock_rate)
         return Measured(sweep_id, sweep, rejected(taken, sweep.position, 0.0, odd))
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
+    if not_given is not None:
+        reading = replace(reading, remarks=(*reading.remarks, not_given))
     middle_s = fmean((turned.began_s, turned.ended_s))
     return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, middle_s, silence))
 
 
+def _unheard(not_given: PulsesNotGiven | None) -> Reason:
+    if not_given is None:
+        return NoPulseHeard()
+    left = not_given.overlapping + not_given.unclear + not_given.strangers
+    return RhythmNotHeard(not_given.given, left)
+
+
 async def _show_progress(
     equipment: CraftEquipment,
-    mission: MissionSpec,
     mission_id: str,
     listening: Listening,
     place_number: int,
@@ -141,15 +161,14 @@ async def _show_progress(
 ) -> None:
     """The running sweep to whoever watches: antenna heading and power so far, of each emitter in turn."""
     offset = equipment.pattern.offset_to_nose_deg
-    emitters = cycle(mission.emitters)
-    while True:
+    for number in count():
         await equipment.clock.sleep(PROGRESS_S)
         await asyncio.sleep(0.05)
         if shown.began_s is None:
             continue
         headings = equipment.vehicle.headings(shown.began_s)
-        emitter = next(emitters)
-        found = listening.between(shown.began_s, equipment.clock.now(), emitter.frequency_hz)
+        emitter = shown.emitters[number % len(shown.emitters)]
+        found = listening.of(emitter, shown.began_s, equipment.clock.now())
         samples = [s for s in found if s.detected]
         if len(headings) < 2 or not samples:
             continue

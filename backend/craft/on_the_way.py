@@ -63,10 +63,11 @@ async def heard_on_leg(
                 emitter.emitter_id,
                 mission.sensor,
                 equipment.pattern,
-                listening.between(began_s, ended_s, emitter.frequency_hz),
+                listening.of(emitter, began_s, ended_s),
                 headings,
             )
             for emitter in wanted
+            if listening.hears(emitter)
         ]
     )
 

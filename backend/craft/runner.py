@@ -17,7 +17,7 @@ from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.fly_home import fly_home
 from backend.craft.hands import Hands
-from backend.craft.listening import Listening, channels_of
+from backend.craft.listening import Listening, channels_for, channels_of
 from backend.craft.measuring import Measured
 from backend.craft.safety import Limits, battery_vetoes, limits_of, resume_vetoes
 from backend.craft.state import CraftState
@@ -29,6 +29,7 @@ from backend.reasons import Reason
 from backend.reasons.flight import WatchBroke
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
+from backend.search.turn_schedule import heard_at_once
 from hardware.reasons.vehicle_news import AutopilotSaid
 
 log = logging.getLogger("crossfix.craft")
@@ -61,7 +62,11 @@ class CraftRunner:
         self._keep_track = keep_track
         mission, limits = task.mission, limits_of(task)
         self.listening = Listening(
-            equipment.receiver, equipment.clock, channels_of(mission), mission.timers.receiver_silent_s
+            equipment.receiver,
+            equipment.clock,
+            channels_of(mission),
+            mission.timers.receiver_silent_s,
+            first=channels_for(heard_at_once(mission.emitters, mission.sensor.receiver_band_hz)[0]),
         )
         self.watch = Watch(equipment, limits, self.listening, craft, give)
         self.work = Work(equipment, task, limits, mission_id, self.listening, self.watch.situation, search, keep_sweep)

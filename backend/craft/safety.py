@@ -23,6 +23,7 @@ from backend.search.altitude import level_altitude
 from backend.search.area import EDGE_TOLERANCE_M, FAR_M
 from backend.search.ground import VERTICAL_TOLERANCE_M, Ground, Way
 from backend.search.task import SearchTask
+from backend.search.turn_schedule import turn_s
 from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
@@ -145,7 +146,7 @@ def limits_of(task: SearchTask) -> Limits:
         reserve_percent=flight.reserve_battery_percent,
         battery_telemetry=flight.battery_telemetry,
         speed_m_s=flight.speed_m_s,
-        measurement_time_s=task.mission.sensor.measurement_time_s,
+        measurement_time_s=turn_s(task.mission),
     )
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from backend.craft.sweep_turns import turn_and_listen
 from backend.events import TurnFact
 from backend.reasons import Reason, carried
 from backend.search.sector import CIRCLE_DEG, TOLERANCE_DEG, GoOn, Stop, TurnPlan, look, turn_fact
+from backend.search.turn_schedule import Round
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
 from hardware.readings import BearingReading, Sweep
@@ -27,9 +29,10 @@ FACING_DEG = 10.0
 
 @dataclass(slots=True)
 class TurnShown:
-    """What whoever watches sees of the turn under way. goal_deg: degrees to turn, as decided so far. began_s: None
-    while the nose swings to where the turn begins."""
+    """What whoever watches sees of the turn under way. emitters: those that are listened to. goal_deg: degrees to turn,
+    as decided so far. began_s: None while the nose swings to where the turn begins."""
 
+    emitters: tuple[EmitterSpec, ...] = ()
     goal_deg: float = CIRCLE_DEG
     begin_deg: float | None = None
     because: Reason | None = None
@@ -50,12 +53,20 @@ class Turned:
 
 
 async def turn_as_planned(
-    equipment: CraftEquipment, mission: MissionSpec, listening: Listening, plan: TurnPlan | None, shown: TurnShown
+    equipment: CraftEquipment,
+    mission: MissionSpec,
+    one: Round,
+    wanted: Collection[str],
+    listening: Listening,
+    plan: TurnPlan | None,
+    shown: TurnShown,
 ) -> Turned:
-    """plan None: the mission turns whole circles and records nothing of why. Raises VehicleError."""
+    """plan None: the mission turns whole circles and records nothing of why. one, wanted: as in `turn_and_listen`,
+    where the turn is a whole one. Raises VehicleError."""
+    shown.emitters = one.emitters
     if plan is None or plan.begin_deg is None:
         shown.began_s = equipment.clock.now()
-        began_s, ended_s = await turn_and_listen(equipment, mission, listening)
+        began_s, ended_s = await turn_and_listen(equipment, mission, one, wanted, listening)
         if plan is None:
             return Turned(began_s, ended_s, None)
         offset = equipment.pattern.offset_to_nose_deg
@@ -107,7 +118,7 @@ async def _reading(
     turned: float,
 ) -> BearingReading | None:
     """Of what was heard so far; None when that is no sweep."""
-    heard = listening.between(*heard_s, emitter.frequency_hz)
+    heard = listening.of(emitter, *heard_s)
     try:
         sweep = assemble_sweep(
             [sample for sample in heard if sample.detected],

@@ -2,50 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from backend.craft.equipment import CraftEquipment
-from backend.craft.listening import Listening
+from backend.craft.listening import Listening, channels_for
+from backend.search.turn_schedule import MOST_TURNS, SLICES, SPARE, Round
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.readings import HeadingSample, PowerSample
 
-SLICES = 16
-SPARE = 1.1
-"""The turn is so much slower than the pulses just need: they do not come in step with the headings."""
 SILENT_AFTER = 1.5
 """A heading that was listened to for this many times its pulses without hearing them has none to offer."""
 FEWER = 1
 """Pulses that a heading may lack that was listened to for about as long as all of them take: a tag keeps no step with
 the turn, nor the turn, which goes in steps of ten degrees, with the headings."""
-MOST_TURNS = 3
-SLOWEST_DEG_S = 2.0
 
 
-def turn_rate_deg_s(mission: MissionSpec) -> float:
-    """As specified, but for tags no faster than lets each sixteenth of the circle hear their pulses in one turn."""
-    rate = mission.sensor.turn_rate_deg_s
-    for emitter in _tags(mission):
-        turn_s = SLICES * mission.sensor.pulses_per_heading * emitter.pulse_period_s * SPARE
-        rate = min(rate, max(360.0 / turn_s, SLOWEST_DEG_S))
-    return rate
-
-
-def _tags(mission: MissionSpec) -> list[EmitterSpec]:
-    return [emitter for emitter in mission.emitters if emitter.kind == "pulsed"]
-
-
-async def turn_and_listen(equipment: CraftEquipment, mission: MissionSpec, listening: Listening) -> tuple[float, float]:
-    """Begin and end (s) of the turning, whose samples have all arrived by now. Raises VehicleError."""
+async def turn_and_listen(
+    equipment: CraftEquipment, mission: MissionSpec, one: Round, wanted: Collection[str], listening: Listening
+) -> tuple[float, float]:
+    """Begin and end (s) of the turning, whose samples have all arrived by now. wanted: emitters by id; it goes round
+    again only for these. Raises VehicleError, ReceiverError when the receiver does not change to this round's channels.
+    """
+    await listening.hear(channels_for(one.emitters))
+    tags = [emitter for emitter in one.emitters if emitter.kind == "pulsed" and emitter.emitter_id in wanted]
     began_s = ended_s = equipment.clock.now()
-    for _ in range(MOST_TURNS if _tags(mission) else 1):
-        await equipment.vehicle.turn(turn_rate_deg_s(mission))
+    for _ in range(MOST_TURNS if tags else 1):
+        await equipment.vehicle.turn(one.rate_deg_s)
         ended_s = equipment.clock.now()
         await listening.heard_until(ended_s)
         headings = equipment.vehicle.headings(began_s)
-        heard = [(tag, listening.between(began_s, ended_s, tag.frequency_hz)) for tag in _tags(mission)]
+        heard = [(tag, listening.of(tag, began_s, ended_s)) for tag in tags]
         if all(complete(tag, mission.sensor.pulses_per_heading, samples, headings) for tag, samples in heard):
             break
     return began_s, ended_s

@@ -23,6 +23,7 @@ from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
 from backend.search.never_stop import check_never_stop
 from backend.search.task import search_task
+from backend.search.told_apart import check_told_apart
 from backend.spec import MissionSpec, Place
 
 log = logging.getLogger("crossfix.mission")
@@ -129,4 +130,5 @@ def _check_spec(spec: MissionSpec) -> None:
     vehicle is: a mission may be planned far from it, or hold recordings only. Preflight refuses to fly it there."""
     check_band(spec.flight)
     check_never_stop(spec)
+    check_told_apart(spec.emitters)
     search_task(spec, centre_of(spec.area), 0.0)

@@ -29,6 +29,30 @@ class ReceiverDelivers:
 
 
 @dataclass(frozen=True, slots=True)
+class ReceiverTakesTurns:
+    """rounds: whole turns, one for each group of channels that its band holds. turn_s: of all of them."""
+
+    channels: int
+    rounds: int
+    turn_s: float
+    code: Literal["receiver_takes_turns"] = "receiver_takes_turns"
+    english: ClassVar[Words] = Words(
+        "The receiver works. Its band holds the {channels} channels in {rounds} groups, one after another: the craft "
+        "goes round once for each, which takes {turn_s} at every place, and less once emitters are found."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TurnTakesLong:
+    turn_s: float
+    code: Literal["turn_takes_long"] = "turn_takes_long"
+    english: ClassVar[Words] = Words(
+        "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
+        "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoSamples:
     code: Literal["no_samples"] = "no_samples"
     english: ClassVar[Words] = Words(
@@ -140,6 +164,8 @@ CheckReason = (
     | RoomToFly
     | StartAllowed
     | ReceiverDelivers
+    | ReceiverTakesTurns
+    | TurnTakesLong
     | NoSamples
     | TagUnheard
     | PatternInUse

@@ -291,6 +291,44 @@ class FirstForLong:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class FrequencyShared:
+    frequency_hz: float
+    code: Literal["frequency_shared"] = "frequency_shared"
+    english: ClassVar[Words] = Words(
+        "Two emitters send at {frequency_hz}, and not both are tags: no receiver can tell them apart.",
+        "Look for one of them at a time; tags at one frequency are told apart by their periods.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TooManyRhythms:
+    frequency_hz: float
+    most: int
+    code: Literal["too_many_rhythms"] = "too_many_rhythms"
+    english: ClassVar[Words] = Words(
+        "More than {most} tags send at {frequency_hz}: too many of their pulses fall together.",
+        "Look for {most} of them at a time.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RhythmsTooAlike:
+    """needed_s: how far apart the two periods have to be."""
+
+    frequency_hz: float
+    first_s: float
+    second_s: float
+    needed_s: float
+    code: Literal["rhythms_too_alike"] = "rhythms_too_alike"
+    english: ClassVar[Words] = Words(
+        "At {frequency_hz} one tag sends every {first_s:3} and another every {second_s:3}: their rhythms are too much "
+        "alike.",
+        "Tags that stray as much are told apart when their periods differ by {needed_s:3} or more. Look for one of "
+        "them at a time, or state a smaller jitter if theirs is.",
+    )
+
+
 SearchReason = (
     AreaEmpty
     | TooFewCorners
@@ -319,4 +357,7 @@ SearchReason = (
     | UnheardForLong
     | UnclearForLong
     | FirstForLong
+    | FrequencyShared
+    | TooManyRhythms
+    | RhythmsTooAlike
 )

@@ -39,6 +39,7 @@ from backend.search.given import motion_of, prior_of
 from backend.search.never_stop import legs_of
 from backend.search.silences import EAST_DEG, silences_of
 from backend.search.source_priors import priors_of
+from backend.search.turn_schedule import turn_s
 from backend.search.way_facts import stretches_of
 from backend.spec import MissionSpec
 from hardware.direction_finding.circle import LikelihoodError, SweepLikelihood
@@ -310,7 +311,7 @@ def localization(
         area=area.region(target),
         sigma=math.radians(sensor.sigma_deg),
         threshold=wanted.expected_rmse_m,
-        measurement_time=sensor.measurement_time_s,
+        measurement_time=turn_s(mission),
         motion=motion_of(planner.motion),
         flight_area=area.region(fence),
         no_fly=area.region(unary_union([*zones, closed or Point()]).buffer(KEEP_OFF_M, join_style="mitre")),
@@ -322,7 +323,7 @@ def localization(
         legs=legs_of(mission),
     )
     if (walk := _walk(emitter.movement)) is not None:
-        problem = replace(problem, threshold=walk.goal(wanted.expected_rmse_m, sensor.measurement_time_s))
+        problem = replace(problem, threshold=walk.goal(wanted.expected_rmse_m, problem.measurement_time))
     rule = LocalizationRule(
         threshold=problem.threshold,
         min_places=wanted.minimum_places,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Literal
 
-from backend.simulation.emitters import EMITTERS, SimulatedEmitter, emitter_places
+from backend.simulation.emitters import EMITTERS, Signal, SimulatedEmitter, beats, emitter_places
 from backend.simulation.walls import walls
 from hardware.clock import ScaledClock
 from hardware.ports import ReceiverError, Vehicle
@@ -23,7 +24,7 @@ TELEMETRY_HELD_WALL_S = 0.25
 class EmittersAroundHome:
     """The Receiver port.
 
-    truth: where each simulated emitter is at first, by its frequency; empty until the home is known.
+    truth: where each simulated emitter is at first; empty until the home is known.
     """
 
     def __init__(
@@ -33,15 +34,17 @@ class EmittersAroundHome:
         seed: int,
         world: Literal["open", "multipath"] = "open",
         emitters: Sequence[SimulatedEmitter] = EMITTERS,
+        band_hz: float | None = None,
     ) -> None:
         self._vehicle = vehicle
         self._clock = clock
         self._seed = seed
         self._world = world
         self._emitters = emitters
+        self._band_hz = band_hz
         self._receiver: SimulatedReceiver | None = None
-        self.truth: Mapping[float, Place] = {}
-        self._transmitting: Mapping[float, Emitter] = {}
+        self.truth: Mapping[Signal, Place] = {}
+        self._transmitting: Mapping[Signal, Emitter] = {}
         self._pose: Callable[[], Telemetry] = vehicle.telemetry
         self._headings: Callable[[float], Sequence[HeadingSample]] | None = vehicle.headings
 
@@ -61,8 +64,9 @@ class EmittersAroundHome:
         if home is None:
             raise ReceiverError(HomeNotKnown())
         self.truth = emitter_places(self._seed, home, self._emitters)
-        emitters = tuple(self._emitter(e) for e in self._emitters)
-        self._transmitting = {emitter.frequency_hz: emitter for emitter in emitters}
+        own = beats(self._seed, self._emitters)
+        self._transmitting = {e.signal: replace(self._emitter(e), **own.get(e.signal, {})) for e in self._emitters}
+        emitters = tuple(self._transmitting.values())
         reflectors = walls(self._seed, home) if self._world == "multipath" else ()
         return SimulatedReceiver(
             World(emitters, reflectors=reflectors, seed=self._seed),
@@ -71,6 +75,7 @@ class EmittersAroundHome:
             ground_amsl_m=telemetry.home_amsl_m or 0.0,
             telemetry_held_s=max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor),
             headings=self._headings,
+            band_hz=self._band_hz,
         )
 
     def _emitter(self, wanted: SimulatedEmitter) -> Emitter:
@@ -78,12 +83,12 @@ class EmittersAroundHome:
         if wanted.gait is not None:
             seed = self._seed + round(wanted.frequency_hz / 1000.0)
             walk = Walk(wanted.gait, wanted.speed_m_s, self._clock.now(), seed)
-        place = self.truth[wanted.frequency_hz]
+        place = self.truth[wanted.signal]
         return Emitter(place, wanted.frequency_hz, pulse_period_s=wanted.pulse_period_s, walk=walk)
 
-    def truth_at(self, at_s: float) -> Mapping[float, Place]:
-        """Where each is at that time (UTC epoch seconds), by its frequency; empty until the home is known."""
-        return {frequency: emitter.at(at_s).place for frequency, emitter in self._transmitting.items()}
+    def truth_at(self, at_s: float) -> Mapping[Signal, Place]:
+        """Where each is at that time (UTC epoch seconds); empty until the home is known."""
+        return {signal: emitter.at(at_s).place for signal, emitter in self._transmitting.items()}
 
     async def close(self) -> None:
         """Harmless while the home is not known."""

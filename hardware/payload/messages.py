@@ -26,12 +26,13 @@ from hardware.reasons.payload_link import MessageNotUnderstood, PayloadLinkReaso
 from hardware.reasons.union import HardwareReason
 from planner.reason import ReasonedError
 
-PROTOCOL = 3
-"""3: several channels at once, and the receiver's state as a reason. Others are refused: update payload and server
-together."""
+PROTOCOL = 4
+"""3: several channels at once, and the receiver's state as a reason. 4: several tags at one frequency. Others are
+refused: update payload and server together."""
 MAXIMUM_MESSAGE_BYTES = 256 * 1024
 MAXIMUM_BATCH = 1000
 MAXIMUM_CHANNELS = 100
+MAXIMUM_RHYTHMS = 16
 M = TypeVar("M")
 
 
@@ -140,16 +141,20 @@ class WireChannel(Message):
 
     frequency_hz: Hertz
     pulses: WirePulses | None
+    others: list[WirePulses] = Field(default_factory=list[WirePulses], max_length=MAXIMUM_RHYTHMS - 1)
 
     @classmethod
     def of(cls, channel: Channel) -> WireChannel:
         """As the payload is asked to listen to it."""
-        pulses = None if channel.pulses is None else WirePulses(**asdict(channel.pulses))
-        return cls(frequency_hz=channel.frequency_hz, pulses=pulses)
+        first, *others = [WirePulses(**asdict(pulses)) for pulses in channel.rhythms] or [None]
+        return cls(frequency_hz=channel.frequency_hz, pulses=first, others=[one for one in others if one is not None])
 
     def channel(self) -> Channel:
         """As the receiver on the payload takes it."""
-        return Channel(self.frequency_hz, None if self.pulses is None else Pulses(**self.pulses.model_dump()))
+        if self.pulses is None:
+            return Channel(self.frequency_hz)
+        first, *others = [Pulses(**pulses.model_dump()) for pulses in (self.pulses, *self.others)]
+        return Channel(self.frequency_hz, first, tuple(others))
 
 
 WireChannels = Annotated[list[WireChannel], Field(min_length=1, max_length=MAXIMUM_CHANNELS)]

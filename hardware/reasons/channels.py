@@ -86,7 +86,8 @@ class BandTooNarrow:
 
     english: ClassVar[Words] = Words(
         "At a sample rate of {sample_rate_hz} the receiver cannot hear {refused_hz} at the same time as the others.",
-        "Raise the sample rate to {needed_hz}, or look for {refused_hz} in a search of its own.",
+        "Raise the sample rate to {needed_hz}, or state in the mission how wide a band the receiver hears: then it "
+        "hears them one after another.",
     )
 
 

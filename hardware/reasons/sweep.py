@@ -188,12 +188,45 @@ class LikelyOtherAntenna:
     )
 
 
-SweepRemark = PatternBorrowed | LikelyOtherAntenna
+@dataclass(frozen=True, slots=True)
+class PulsesNotGiven:
+    """Of a turn at a frequency at which several tags send: how many pulses were some tag's, and how many count for
+    none, since two tags sent at once, since they could be more than one's, or since they fit no tag."""
+
+    given: int
+    overlapping: int
+    unclear: int
+    strangers: int
+    code: Literal["pulses_not_given"] = "pulses_not_given"
+
+    english: ClassVar[Words] = Words(
+        "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, "
+        "{unclear} that could be more than one's and {strangers} that fit none count for no tag."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RhythmNotHeard:
+    """given: pulses of other tags at its frequency. left: those that count for no tag."""
+
+    given: int
+    left: int
+    code: Literal["rhythm_not_heard"] = "rhythm_not_heard"
+
+    english: ClassVar[Words] = Words(
+        "No pulse in the rhythm of this tag was heard; at its frequency there were {given} pulses of other tags, and "
+        "{left} that count for none.",
+        "Measure nearer to it; check its period and the jitter in the mission.",
+    )
+
+
+SweepRemark = PatternBorrowed | LikelyOtherAntenna | PulsesNotGiven
 """What makes the bearing of a sweep less certain, without refusing it."""
 
 SweepReason = (
     NothingHeardInTurn
     | NoPulseHeard
+    | RhythmNotHeard
     | NoHeadingHeard
     | HeadingsNotNumbers
     | NoPositionHeard

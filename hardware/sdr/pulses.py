@@ -45,6 +45,33 @@ class PulseSetting:
         return self.search_hz
 
 
+@dataclass(frozen=True, slots=True)
+class _Cells:
+    """Power by time and frequency. starts: (r,) first samples. power: (r, b). near: (b,) bins in which the tag may be.
+    noise: mean of a cell; times `threshold` is a pulse."""
+
+    starts: NDArray[np.int64]
+    power: NDArray[np.float64]
+    near: NDArray[np.bool_]
+    noise: float
+    threshold: float
+
+    @property
+    def eligible(self) -> NDArray[np.float64]:
+        """(r, b) power, -1 where the tag cannot be."""
+        return np.where(self.near[None, :], self.power, -1.0)
+
+    @property
+    def loudest(self) -> NDArray[np.float64]:
+        """(r,) of each moment."""
+        return self.eligible.max(axis=1)
+
+    @property
+    def heard(self) -> NDArray[np.bool_]:
+        """(r,) whether that is loud enough for a pulse."""
+        return self.loudest > self.threshold * max(self.noise, LEVEL_FLOOR)
+
+
 @dataclass(slots=True)
 class PulseMeter:
     """Feeds on IQ blocks, gives one PowerSample for each pulse heard, at the pulse's own time.
@@ -107,36 +134,46 @@ class PulseMeter:
 
     def _search(self, window: int) -> tuple[PowerSample, int]:
         """The loudest pulse in one period from the front (or that there is none), and how many samples to step on."""
-        hop = max(self._size // 4, 1)
-        starts = np.arange(0, window, hop)
-        cells = np.lib.stride_tricks.sliding_window_view(self._samples, self._size)[starts]
-        power = np.abs(np.fft.fft(cells, axis=1)) ** 2 / self._size**2
-        near = np.abs(self._bins_hz - (self.frequency_hz - self.centre_hz)) <= self.setting.search_hz
-        noise = float(np.median(power[:, near])) * mean_over_median(1)
-        eligible = np.where(near[None, :] & self._due(starts)[:, None], power, -1.0)
-        row, column = np.unravel_index(int(np.argmax(eligible)), power.shape)
-        peak = float(eligible[row, column])
-        threshold = 10.0 ** (self.setting.threshold_db / 10.0)
-        floor_db = 10.0 * math.log10(max(3.0 * noise, LEVEL_FLOOR)) - self.gain_db
-        if peak <= threshold * max(noise, LEVEL_FLOOR):
-            middle_s = self._start_s + window / 2.0 / self.sample_rate_hz
-            return PowerSample(middle_s, self.frequency_hz, floor_db, floor_db, detected=False), window // 2
-        begin = int(starts[row])
-        at_s = self._start_s + (begin + self._size / 2.0) / self.sample_rate_hz
-        self._last_pulse_s = at_s
-        # a tone between two bins leaks into its neighbours: sum the three
-        around = [(int(column) + k) % self._size for k in (-1, 0, 1)]
-        level = float(power[row, around].sum())
-        pulse = PowerSample(
-            at_s=at_s,
-            frequency_hz=self.frequency_hz,
-            power_db=10.0 * math.log10(level) - self.gain_db,
-            noise_floor_db=floor_db,
-            clipped=bool(self._clipped[begin : begin + self._size].mean() > CLIPPED_SHARE),
-        )
+        cells = self._cells(window)
+        row = int(np.argmax(np.where(self._due(cells.starts), cells.loudest, -1.0)))
+        if not cells.heard[row]:
+            return self._nothing(window, cells.noise), window // 2
+        begin = int(cells.starts[row])
+        pulse = self._pulse(cells, row)
+        self._last_pulse_s = pulse.at_s
         # go on just before the earliest time at which the next pulse can come
         step = self.setting.period_s - self.setting.jitter_s - self.setting.width_s
         return pulse, max(begin + int(step * self.sample_rate_hz), self._size)
+
+    def _cells(self, window: int) -> _Cells:
+        """The sliding spectrum from the front, `window` samples long."""
+        starts = np.arange(0, window, max(self._size // 4, 1))
+        pieces = np.lib.stride_tricks.sliding_window_view(self._samples, self._size)[starts]
+        power = np.abs(np.fft.fft(pieces, axis=1)) ** 2 / self._size**2
+        near = np.abs(self._bins_hz - (self.frequency_hz - self.centre_hz)) <= self.setting.search_hz
+        noise = float(np.median(power[:, near])) * mean_over_median(1)
+        return _Cells(starts, power, near, noise, 10.0 ** (self.setting.threshold_db / 10.0))
+
+    def _nothing(self, window: int, noise: float) -> PowerSample:
+        middle_s = self._start_s + window / 2.0 / self.sample_rate_hz
+        floor_db = self._floor_db(noise)
+        return PowerSample(middle_s, self.frequency_hz, floor_db, floor_db, detected=False)
+
+    def _pulse(self, cells: _Cells, row: int) -> PowerSample:
+        begin = int(cells.starts[row])
+        # a tone between two bins leaks into its neighbours: sum the three
+        around = [(int(np.argmax(cells.eligible[row])) + k) % self._size for k in (-1, 0, 1)]
+        level = float(cells.power[row, around].sum())
+        return PowerSample(
+            at_s=self._start_s + (begin + self._size / 2.0) / self.sample_rate_hz,
+            frequency_hz=self.frequency_hz,
+            power_db=10.0 * math.log10(level) - self.gain_db,
+            noise_floor_db=self._floor_db(cells.noise),
+            clipped=bool(self._clipped[begin : begin + self._size].mean() > CLIPPED_SHARE),
+        )
+
+    def _floor_db(self, noise: float) -> float:
+        return 10.0 * math.log10(max(3.0 * noise, LEVEL_FLOOR)) - self.gain_db
 
     def _due(self, starts: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Which starts fit the rhythm: a whole number of periods after the last pulse, give or take jitter."""

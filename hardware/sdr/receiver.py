@@ -11,6 +11,7 @@ from hardware.ports import ReceiverError
 from hardware.readings import Channel, PowerSample
 from hardware.reasons.channels import BandTooNarrow, OutsideBand
 from hardware.reasons.receiver import GainFixed, ReceiverNotOpen, ReceiverSilent, SamplesLost
+from hardware.sdr.every_pulse import EveryPulseMeter, every_pulse_setting
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.spectrum import SpectrumError, ToneMeter, ToneSetting, outside_band
 from hardware.sdr.tuning import Reach, centre_hz
@@ -44,14 +45,18 @@ class IqReceiver:
             raise ReceiverError(centre)
         tuned = await self._source.open(centre)
         try:
-            self._meters = self._meters_at(tuned, wanted, settings)
+            self._meters = self._meters_at(tuned, channels, wanted, settings)
         except ReceiverError:
             await self._source.close()
             raise
         self.lost_samples = 0
 
     def _meters_at(
-        self, tuned_hz: float, wanted: Sequence[Reach], settings: Sequence[ToneSetting | PulseSetting]
+        self,
+        tuned_hz: float,
+        channels: Sequence[Channel],
+        wanted: Sequence[Reach],
+        settings: Sequence[ToneSetting | PulseSetting],
     ) -> list[ToneMeter | PulseMeter]:
         """A recording keeps its own centre, and a radio may take a sample rate near the one it was asked for."""
         rate, gain = self._source.sample_rate_hz, self._source.gain_db
@@ -60,10 +65,12 @@ class IqReceiver:
             raise ReceiverError(OutsideBand(rate, tuned_hz, tuple(outside)))
         try:
             return [
-                PulseMeter(reach.frequency_hz, tuned_hz, rate, gain, setting)
+                EveryPulseMeter.of(channel.rhythms, channel.frequency_hz, tuned_hz, rate, gain)
+                if channel.others
+                else PulseMeter(channel.frequency_hz, tuned_hz, rate, gain, setting)
                 if isinstance(setting, PulseSetting)
-                else ToneMeter(reach.frequency_hz, tuned_hz, rate, gain, setting)
-                for reach, setting in zip(wanted, settings, strict=True)
+                else ToneMeter(channel.frequency_hz, tuned_hz, rate, gain, setting)
+                for channel, setting in zip(channels, settings, strict=True)
             ]
         except SpectrumError as error:
             raise ReceiverError(error.reason) from error
@@ -118,4 +125,6 @@ class IqReceiver:
 def _setting(channel: Channel) -> ToneSetting | PulseSetting:
     """Raises SpectrumError for pulses that cannot be."""
     pulses = channel.pulses
+    if channel.others:
+        return every_pulse_setting(channel.rhythms)
     return ToneSetting() if pulses is None else PulseSetting(pulses.width_s, pulses.period_s, pulses.jitter_s)

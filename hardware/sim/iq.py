@@ -79,7 +79,7 @@ class SimulatedIq:
         if centre_hz is None:
             raise ReceiverError(ReceiverNotOpen())
         links = [
-            RadioLink(self._world, emitter.frequency_hz)
+            RadioLink(self._world, emitter.frequency_hz, self._world.emitters_at(emitter.frequency_hz).index(emitter))
             for emitter in self._world.emitters
             if abs(emitter.frequency_hz - centre_hz) < self._rate / 2.0
         ]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from hardware.sim.antenna import AntennaField, YagiOnAirframe
+from hardware.sim.beat import Beat
 from hardware.sim.propagation import SPEED_OF_LIGHT_M_S, Fading, FadingProcess, two_ray_gain
 from hardware.sim.walk import Walk
 
@@ -26,8 +27,8 @@ class WorldError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Emitter:
-    """A transmitter. `pulse_period_s` None: a carrier; else pulses of `pulse_width_s`. walk: how it moves, having been
-    at `place` when the walk began; None: it stands still."""
+    """A transmitter. `pulse_period_s` None: a carrier; else pulses of `pulse_width_s`, whose phase, clock and straying
+    are as in `Beat`. walk: how it moves, having been at `place` when the walk began; None: it stands still."""
 
     place: Place
     frequency_hz: float = 868_300_000.0
@@ -36,7 +37,17 @@ class Emitter:
     polarization_loss_db: float = 3.0
     pulse_period_s: float | None = None
     pulse_width_s: float = 0.02
+    pulse_phase_s: float = 0.0
+    clock_error: float = 0.0
+    pulse_stray_s: float = 0.0
     walk: Walk | None = None
+
+    @property
+    def beat(self) -> Beat | None:
+        """None: it sends without pause."""
+        if self.pulse_period_s is None:
+            return None
+        return Beat(self.pulse_period_s, self.pulse_width_s, self.pulse_phase_s, self.clock_error, self.pulse_stray_s)
 
     def at(self, at_s: float) -> Emitter:
         """Where it is at that time of the world's clock."""
@@ -129,10 +140,10 @@ class World:
         if not self.emitters:
             raise WorldError("the world has no emitter: give at least one")
 
-    def emitter_at(self, frequency_hz: float) -> Emitter | None:
-        """The emitter inside the receiver's bandwidth around `frequency_hz`, None when there is none."""
+    def emitters_at(self, frequency_hz: float) -> list[Emitter]:
+        """Every emitter inside the receiver's bandwidth around `frequency_hz`, the nearest first."""
         inside = [e for e in self.emitters if abs(e.frequency_hz - frequency_hz) <= self.front_end.bandwidth_hz / 2]
-        return min(inside, key=lambda e: abs(e.frequency_hz - frequency_hz)) if inside else None
+        return sorted(inside, key=lambda e: abs(e.frequency_hz - frequency_hz))
 
     def received_field(self, emitter: Emitter, pose: Pose) -> complex:
         """Complex amplitude at the antenna's terminals without fading and noise; |.|^2 in milliwatt."""
@@ -171,16 +182,26 @@ class World:
 
 @dataclass(slots=True)
 class RadioLink:
-    """One receiver listening to one frequency of the world: fading, noise and clipping, drawn in time order."""
+    """One receiver listening to one frequency of the world: fading, noise and clipping, drawn in time order.
+
+    number: which of the emitters there is heard, 0 the nearest.
+    """
 
     world: World
     frequency_hz: float
+    number: int = 0
     _rng: np.random.Generator = field(init=False)
     _fading: FadingProcess = field(init=False)
 
     def __post_init__(self) -> None:
-        self._rng = np.random.default_rng([self.world.seed, round(self.frequency_hz)])
+        chance = [self.world.seed, round(self.frequency_hz), *([self.number] if self.number else [])]
+        self._rng = np.random.default_rng(chance)
         self._fading = FadingProcess(self.world.fading, self._rng)
+
+    @property
+    def emitter(self) -> Emitter | None:
+        """Whom it hears, as the world is now."""
+        return next(iter(self.world.emitters_at(self.frequency_hz)[self.number :]), None)
 
     def amplitude(self, at_s: float, pose: Pose) -> complex:
         """Faded complex amplitude at the antenna's terminals (sqrt mW); 0 without an emitter or between pulses."""
@@ -196,15 +217,13 @@ class RadioLink:
         lean: Lean = UPRIGHT,
     ) -> NDArray[np.complex128]:
         """(n,) the same at (n,) times and headings of a vehicle that turns on one place."""
-        emitter = self.world.emitter_at(self.frequency_hz)
+        emitter = self.emitter
         if emitter is None:
             return np.zeros(at_s.size, dtype=np.complex128)
         fading = np.array([self._fading.gain(float(t)) for t in at_s])
         middle = emitter.at(float(at_s.mean())) if at_s.size else emitter
         received = self.world.received_fields(middle, place, height_m, heading_deg, lean) * fading
-        if emitter.pulse_period_s is None:
-            return received
-        return np.where(at_s % emitter.pulse_period_s < emitter.pulse_width_s, received, 0.0)
+        return received if emitter.beat is None else np.where(emitter.beat.sends(at_s), received, 0.0)
 
     def power_dbm(self, at_s: float, pose: Pose) -> tuple[float, bool]:
         """(power reading dBm, clipped)."""
@@ -221,11 +240,15 @@ class RadioLink:
         lean: Lean = UPRIGHT,
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) readings in dBm and whether each clipped: mean of |signal + noise|^2 over `averages` draws, jittered."""
+        return self.read_dbm(self.amplitudes(at_s, place, height_m, heading_deg, lean))
+
+    def read_dbm(self, amplitude: NDArray[np.complex128]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """(n,) the same of (n,) amplitudes, which may be those of several emitters, added up."""
         front_end = self.world.front_end
-        signal_mw = np.abs(self.amplitudes(at_s, place, height_m, heading_deg, lean)) ** 2
+        signal_mw = np.abs(amplitude) ** 2
         noise_mw = 10.0 ** (front_end.noise_dbm / 10.0)
         # mean of n draws of |s + w|^2: mean S + N, variance (2 S N + N^2) / n
         spread = np.sqrt((2.0 * signal_mw * noise_mw + noise_mw**2) / front_end.averages)
-        reading_mw = np.maximum(signal_mw + noise_mw + spread * self._rng.normal(size=at_s.size), 0.05 * noise_mw)
-        reading_dbm = 10.0 * np.log10(reading_mw) + front_end.jitter_db * self._rng.normal(size=at_s.size)
+        reading_mw = np.maximum(signal_mw + noise_mw + spread * self._rng.normal(size=amplitude.size), 0.05 * noise_mw)
+        reading_dbm = 10.0 * np.log10(reading_mw) + front_end.jitter_db * self._rng.normal(size=amplitude.size)
         return np.minimum(reading_dbm, front_end.clip_dbm), reading_dbm >= front_end.clip_dbm

@@ -20,7 +20,7 @@ from backend.api.suggestion import suggested_mission
 from backend.cli.demo import CARRIER, simulated, sought
 from backend.cli.truth import HOME
 from backend.search.localization import localization
-from backend.simulation.emitters import emitter_places
+from backend.simulation.emitters import Signal, emitter_places
 from planner.belief.joint import JointBelief
 from planner.belief.shared_source import with_shared_errors
 from planner.options import PlannerOptions
@@ -47,7 +47,7 @@ def flown(emitters: int) -> tuple[list[list[Wanted]], PlannerOptions]:
         problems: list[Problem] = []
         beliefs: list[JointBelief] = []
         for task, emitter, bearings in zip(tasks, mission.emitters, heard, strict=True):
-            east, north = task.frame.to_enu(truth[emitter.frequency_hz])
+            east, north = task.frame.to_enu(truth[Signal(emitter.frequency_hz)])
             angle = math.atan2(north - y, east - x) + OWN * float(rng.standard_normal())
             bearings.append(Bearing(x, y, angle, OWN, source="craft:craft-1"))
             belief = task.belief(bearings)

@@ -33,6 +33,24 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         yield made
 
 
+def test_two_tags_at_one_frequency_are_asked_for_by_their_periods(server: Server, screen: Screen) -> None:
+    screen.go(f"#/new/{server.draft({})}")
+    screen.part("field-emitters-0-kind").select_option("pulsed")
+    listed = screen.part("emitter-list")
+    listed.fill("150.1/1.3 vixen\n150.1/1.28 cub")
+    listed.blur()
+    expect(screen.part("emitter-list-bad")).to_have_count(0)
+    expect(screen.part("field-emitters-0-pulse_jitter_s")).to_have_value("0.03")
+    screen.part("save").click()
+    expect(screen.part("edit-problem")).to_contain_text("0.060")
+    listed.fill("150.1/1.3 vixen\n150.1/1.05 cub")
+    listed.blur()
+    screen.part("field-receiver-band").select_option("25")
+    expect(screen.part("emitter-count")).to_contain_text("one after another")
+    screen.part("save").click()
+    screen.checked()
+
+
 def test_eight_tags_are_planned_flown_found_one_by_one_and_reported(server: Server, screen: Screen) -> None:
     alone = {"bearing_errors": "independent", "shared_errors": False, "pulses_per_heading": 1}
     screen.go(f"#/new/{server.draft(alone, expected_rmse_m=12.0, minimum_crossing_angle_deg=0)}")

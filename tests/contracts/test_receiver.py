@@ -42,6 +42,7 @@ PERIOD_S, WIDTH_S = 0.5, 0.02
 CARRIER = Channel(FREQUENCY_HZ)
 SECOND = Channel(FREQUENCY_HZ - 9_000.0)
 TAG = Channel(FREQUENCY_HZ + 9_000.0, Pulses(WIDTH_S, PERIOD_S))
+SHARED = Channel(FREQUENCY_HZ - 18_000.0, Pulses(WIDTH_S, PERIOD_S), (Pulses(WIDTH_S, 0.4),))
 FAR = Channel(FREQUENCY_HZ + 40e6)
 HOME = Place(50.6, 7.2)
 PATIENCE_S = 20.0
@@ -51,6 +52,8 @@ WORLD = World(
         Emitter(NORTH, FREQUENCY_HZ),
         Emitter(NORTH, SECOND.frequency_hz),
         Emitter(NORTH, TAG.frequency_hz, pulse_period_s=PERIOD_S, pulse_width_s=WIDTH_S),
+        Emitter(NORTH, SHARED.frequency_hz, pulse_period_s=PERIOD_S, pulse_width_s=WIDTH_S, pulse_phase_s=0.3),
+        Emitter(NORTH, SHARED.frequency_hz, pulse_period_s=0.4, pulse_width_s=WIDTH_S, pulse_phase_s=0.17),
     )
 )
 
@@ -87,6 +90,8 @@ def sigmf_recording(tmp_path: Path) -> Receiver:
         return 0.1 * np.exp(2j * np.pi * (channel.frequency_hz - centre_hz) * t)
 
     iq = tone(CARRIER) + tone(SECOND) + np.where(t % PERIOD_S < WIDTH_S, tone(TAG), 0.0)
+    both = ((t - 0.3) % PERIOD_S < WIDTH_S) | ((t - 0.17) % 0.4 < WIDTH_S)
+    iq += np.where(both, tone(SHARED), 0.0)
     rng = np.random.default_rng(1)
     iq += 1e-4 * (rng.normal(size=t.size) + 1j * rng.normal(size=t.size))
     return IqReceiver(SigmfSource(write_sigmf(tmp_path / "tones", iq, rate_hz, centre_hz, 1.78e9)))
@@ -206,6 +211,21 @@ async def test_samples_are_finite_in_time_order_and_of_the_asked_frequency(recei
     assert all(math.isfinite(s.power_db) and s.frequency_hz == FREQUENCY_HZ for s in heard)
     assert all(a.at_s < b.at_s for a, b in itertools.pairwise(heard))
     assert all(s.noise_floor_db is None or s.noise_floor_db < s.power_db + 3.0 for s in heard)
+
+
+async def test_of_several_tags_at_one_frequency_every_pulse_is_heard(receiver: Receiver, rig: Rig) -> None:
+    if rig.pulses is not None:
+        with refusing(CarriersOnly(SHARED.frequency_hz), ReceiverError):
+            await receiver.open([SHARED])
+        return
+    heard = [sample for sample in (await hear_each(receiver, [SHARED], 20))[SHARED.frequency_hz] if sample.detected]
+    assert all(a.at_s < b.at_s for a, b in itertools.pairwise(heard))
+    if isinstance(receiver, LoopbackPayload):
+        assert receiver.hub.channels is not None
+        assert [one.channel() for one in receiver.hub.channels] == [SHARED], "the payload is told of every rhythm"
+        return
+    seconds = heard[-1].at_s - heard[0].at_s
+    assert len(heard) > 1.3 * seconds / 0.4, "more than either tag sends alone"
 
 
 async def test_samples_before_open_are_refused(receiver: Receiver) -> None:

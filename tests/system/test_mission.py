@@ -8,6 +8,7 @@ import pytest
 from console import Console, console
 
 from backend.cli.running import RunningServer
+from backend.simulation.emitters import Signal
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -33,7 +34,7 @@ async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, 
 
     last = operator.of("belief_updated")[-1]["event"]
     assert server.receiver is not None
-    truth = server.receiver.truth[868.3e6]
+    truth = server.receiver.truth[Signal(868.3e6)]
     error = math.hypot(*LocalFrame(truth).to_enu(Place(last["estimate"]["lat"], last["estimate"]["lon"])))
     assert error < 4 * last["estimate"]["expected_rmse_m"]
     assert len({(b["event"]["place"]["lat"], b["event"]["place"]["lon"]) for b in operator.of("bearing_measured")}) >= 2

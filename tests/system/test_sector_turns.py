@@ -8,6 +8,7 @@ import pytest
 from console import Console
 
 from backend.cli.running import RunningServer
+from backend.simulation.emitters import Signal
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -31,7 +32,7 @@ async def test_a_mission_is_localized_with_turns_only_as_far_as_needed(
     assert ended["outcome"] == "localized", operator.story()
     last = operator.of("belief_updated")[-1]["event"]
     assert server.receiver is not None
-    truth = server.receiver.truth[868.3e6]
+    truth = server.receiver.truth[Signal(868.3e6)]
     error = math.hypot(*LocalFrame(truth).to_enu(Place(last["estimate"]["lat"], last["estimate"]["lon"])))
     assert error < 4 * last["estimate"]["expected_rmse_m"]
 

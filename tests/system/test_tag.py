@@ -10,7 +10,7 @@ from console import console
 
 from backend.cli.demo import TAG, TAG_SENSOR
 from backend.cli.running import RunningServer
-from backend.simulation.emitters import EMITTERS, emitter_places
+from backend.simulation.emitters import EMITTERS, Signal, emitter_places
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -28,11 +28,11 @@ async def test_a_wildlife_tag_is_found_by_its_pulses(server: RunningServer) -> N
         assert mission["outcome"] == "localized"
         assert server.receiver is not None
         home = Place(mission["home"]["lat"], mission["home"]["lon"])
-        truth = server.receiver.truth[150e6]
+        truth = server.receiver.truth[Signal(150e6, 1.3)]
         (found,) = [emitter["estimate"] for emitter in mission["found"]]
         estimate = Place(found["lat"], found["lon"])
         assert math.hypot(*LocalFrame(truth).to_enu(estimate)) < 4 * found["expected_rmse_m"]
-        assert math.hypot(*LocalFrame(truth).to_enu(emitter_places(3, home, EMITTERS)[150e6])) < 1.0
+        assert math.hypot(*LocalFrame(truth).to_enu(emitter_places(3, home, EMITTERS)[Signal(150e6, 1.3)])) < 1.0
         bearing = operator.of("bearing_measured")[0]["event"]
         sweep = await _sweep(operator.client, operator.mission_id, bearing["sweep_id"])
         seconds = sweep["at_s"][-1]

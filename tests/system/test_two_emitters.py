@@ -10,7 +10,7 @@ from shapely import Point
 from shapely.geometry import shape
 
 from backend.cli.running import RunningServer
-from backend.simulation.emitters import EMITTERS
+from backend.simulation.emitters import EMITTERS, Signal
 from backend.spec import EmitterSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
@@ -47,7 +47,7 @@ async def test_one_craft_localizes_two_emitters(server: RunningServer) -> None:
         mission = (await operator.client.get(f"/api/missions/{operator.mission_id}")).json()
         assert mission["localized"]
         assert server.receiver is not None
-        truths = {e.emitter_id: server.receiver.truth[e.frequency_hz] for e in LOOKED_FOR}
+        truths = {e.emitter_id: server.receiver.truth[Signal(e.frequency_hz)] for e in LOOKED_FOR}
         assert [found["emitter_id"] for found in mission["found"]] == list(truths)
         for found in mission["found"]:
             estimate, truth = found["estimate"], truths[found["emitter_id"]]

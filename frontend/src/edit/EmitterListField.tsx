@@ -4,7 +4,7 @@ import { OrderButtons } from "../panels/OrderButtons";
 import { PlaceInOrder } from "../panels/PlaceInOrder";
 import { emitterName } from "../state/emitterName";
 import { importanceWords, inOrder, type Priorities, prioritiesOf } from "../state/importance";
-import type { EmitterSpec } from "../wire";
+import type { EmitterSpec, MissionSpec } from "../wire";
 import { draft, update } from "./draft";
 import { EMITTER } from "./emitter";
 import { badLineWords, LIST, listOf, readList } from "./emitterList";
@@ -47,6 +47,11 @@ function Order({ emitters }: { emitters: readonly EmitterSpec[] }) {
   );
 }
 
+function countWords({ emitters, sensor }: MissionSpec): MessageKey {
+  if (emitters.length === 1) return "edit.list.one";
+  return sensor.receiver_band_hz ? "edit.list.inTurn" : "edit.list.count";
+}
+
 export function EmitterListField() {
   const { spec, text } = draft.value!;
   const raw = text[LIST];
@@ -69,7 +74,7 @@ export function EmitterListField() {
       <div id="emitter-list-message" class="emitter-list-said">
         {words.length === 0 && (
           <span class="muted" data-testid="emitter-count">
-            {t(spec.emitters.length === 1 ? "edit.list.one" : "edit.list.count", { count: spec.emitters.length })}
+            {t(countWords(spec), { count: spec.emitters.length })}
           </span>
         )}
         {words.map((word) => (

@@ -59,3 +59,27 @@ it("more emitters than a search may have are refused, not cut off in silence", (
   expect(emitters).toHaveLength(MOST_EMITTERS);
   expect(bad.map((b) => b.problem)).toEqual(["edit.list.bad.many", "edit.list.bad.many"]);
 });
+
+it("tags at one frequency are told apart by the period behind the slash, and shown with it", () => {
+  const { emitters, bad } = readList("150.1/1.3 vixen\n150,1 / 1,05 s cub\n151/1.3", before);
+  expect(bad).toEqual([]);
+  expect(emitters.map((e) => [e.frequency_hz, e.kind, e.pulse_period_s, e.label])).toEqual([
+    [150_100_000, "pulsed", 1.3, "vixen"],
+    [150_100_000, "pulsed", 1.05, "cub"],
+    [151_000_000, "pulsed", 1.3, "tag"],
+  ]);
+  expect(listOf(emitters).split("\n")[1]).toBe("150.1/1.05 cub");
+  const again = readList(listOf(emitters), emitters);
+  expect(again).toEqual({ emitters, bad: [] });
+});
+
+it("one frequency and period twice, or a period that cannot be, is a bad line", () => {
+  const { bad } = readList("150.1/1.3\n150.1/1.30 again\n150.2/0\n150.2/61\n150.2/x\n150.3/1.3/2", before);
+  expect(bad.map(({ line, problem }) => [line, problem])).toEqual([
+    [2, "edit.list.bad.twice"],
+    [3, "edit.list.bad.period"],
+    [4, "edit.list.bad.period"],
+    [5, "edit.list.bad.frequency"],
+    [6, "edit.list.bad.frequency"],
+  ]);
+});

@@ -237,7 +237,8 @@ export const reasonsEn: ReasonTable = {
   },
   band_too_narrow: {
     text: "At a sample rate of {sample_rate_hz} the receiver cannot hear {refused_hz} at the same time as the others.",
-    remedy: "Raise the sample rate to {needed_hz}, or look for {refused_hz} in a search of its own.",
+    remedy:
+      "Raise the sample rate to {needed_hz}, or state in the mission how wide a band the receiver hears: then it hears them one after another.",
   },
   outside_band: {
     text: "A sample rate of {sample_rate_hz} around {centre_hz} does not hold {refused_hz}.",
@@ -376,6 +377,10 @@ export const reasonsEn: ReasonTable = {
     text: "No pulse of the tag was heard in any direction.",
     remedy: "Switch the tag on, or measure nearer to it.",
   },
+  rhythm_not_heard: {
+    text: "No pulse in the rhythm of this tag was heard; at its frequency there were {given} pulses of other tags, and {left} that count for none.",
+    remedy: "Measure nearer to it; check its period and the jitter in the mission.",
+  },
   no_heading_heard: {
     text: "The vehicle reported no heading during the turn.",
     remedy: "Check its telemetry link and the rate of ATTITUDE.",
@@ -439,6 +444,10 @@ export const reasonsEn: ReasonTable = {
   likely_other_antenna: {
     text: "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
     remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
+  },
+  pulses_not_given: {
+    text: "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, {unclear} that could be more than one's and {strangers} that fit none count for no tag.",
+    remedy: "",
   },
   nose_swung: {
     text: "The nose swung {swung|time|times} by {amplitude_deg} to either side, at {rate_deg_s} and at most {lag_deg} behind{end?near_place=, until the place was near|not_ours=, until another order or another pilot|lags=. Then it did not follow, and was left alone|refused=. Then the autopilot refused, and it was left alone}.",
@@ -1036,6 +1045,14 @@ export const reasonsEn: ReasonTable = {
   receiver_delivers: {
     text: "The receiver delivers samples on {channels|channel|channels}.",
     remedy: "",
+  },
+  receiver_takes_turns: {
+    text: "The receiver works. Its band holds the {channels} channels in {rounds} groups, one after another: the craft goes round once for each, which takes {turn_s} at every place, and less once emitters are found.",
+    remedy: "",
+  },
+  turn_takes_long: {
+    text: "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
+    remedy: "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
   },
   no_samples: {
     text: "The receiver delivers no samples.",
@@ -1672,6 +1689,19 @@ export const reasonsEn: ReasonTable = {
   first_for_long: {
     text: "{places|place was|places were} chosen for it first and it is not localized; the others come first now.",
     remedy: "Set the order again to look for it first all the same.",
+  },
+  frequency_shared: {
+    text: "Two emitters send at {frequency_hz}, and not both are tags: no receiver can tell them apart.",
+    remedy: "Look for one of them at a time; tags at one frequency are told apart by their periods.",
+  },
+  too_many_rhythms: {
+    text: "More than {most} tags send at {frequency_hz}: too many of their pulses fall together.",
+    remedy: "Look for {most} of them at a time.",
+  },
+  rhythms_too_alike: {
+    text: "At {frequency_hz} one tag sends every {first_s:3} and another every {second_s:3}: their rhythms are too much alike.",
+    remedy:
+      "Tags that stray as much are told apart when their periods differ by {needed_s:3} or more. Look for one of them at a time, or state a smaller jitter if theirs is.",
   },
   database_silent: {
     text: "The database does not answer: {detail}.",

@@ -15,6 +15,8 @@ import { PreviewCard } from "../edit/PreviewCard";
 import { ProfileRow } from "../edit/ProfileRow";
 import { type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
 import { clearPreview } from "../edit/preview";
+import { ReceiverBandField } from "../edit/ReceiverBandField";
+import { RhythmFields } from "../edit/RhythmFields";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
@@ -71,6 +73,8 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
         </>
       )}
       <KindField />
+      <RhythmFields failed={failed} />
+      <ReceiverBandField />
       <MovementField failed={failed} />
     </fieldset>
   );

@@ -23,12 +23,13 @@ from backend.events import (
 from backend.reasons import NotLocalized, PlacesUsedUp
 from backend.reasons.search import Localized
 from backend.settings import Settings
+from backend.simulation.emitters import Signal
 from backend.spec import FIRST_EMITTER, EmitterSpec, MissionSpec, Polygon
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
 TRUTH = Place(50.0, 7.0)
-TRUTHS = {EmitterSpec().frequency_hz: TRUTH}
+TRUTHS = {Signal(EmitterSpec().frequency_hz): TRUTH}
 
 
 def log(*events: Event, emitters: list[EmitterSpec] | None = None) -> MissionLog:
@@ -101,7 +102,7 @@ def test_not_localized_is_said_with_its_reason_and_no_made_up_numbers() -> None:
 def test_every_emitter_is_graded_against_its_own_truth() -> None:
     emitters = sought(CARRIER, 2)
     flown = log(belief(3.0, 10.0), belief(30.0, 10.0, "emitter-2"), ended("localized"), emitters=emitters)
-    result = summary(flown, Settings(), {emitter.frequency_hz: TRUTH for emitter in emitters})
+    result = summary(flown, Settings(), {Signal(emitter.frequency_hz): TRUTH for emitter in emitters})
     assert [graded["emitter_id"] for graded in result["emitters"]] == ["emitter-1", "emitter-2"]
     assert [graded["in_c95"] for graded in result["emitters"]] == [True, False]
     assert result["emitters"][1]["error_m"] == pytest.approx(30.0, rel=1e-3)

@@ -16,6 +16,7 @@ from hardware.reasons.channels import FrequencyNotAskedFor
 from hardware.reasons.receiver import ReceiverSilent, ReceiverStreamEnded, ReceiverUnplugged
 
 CARRIER_HZ, TAG_HZ = 868.3e6, 150e6
+BEACON = EmitterSpec(frequency_hz=CARRIER_HZ)
 CARRIER, TAG = Channel(CARRIER_HZ), Channel(TAG_HZ, Pulses(0.02, 1.3))
 
 
@@ -42,11 +43,11 @@ async def test_samples_of_an_interval_come_in_order() -> None:
     await clock.sleep(3.0)
     end = clock.now()
     await clock.sleep(1.0)
-    found = listening.between(begin, end, CARRIER_HZ)
+    found = listening.of(BEACON, begin, end)
     assert found
     assert [s.at_s for s in found] == sorted(s.at_s for s in found)
     assert all(begin <= s.at_s <= end for s in found)
-    assert listening.between(end + 100.0, end + 200.0, CARRIER_HZ) == []
+    assert listening.of(BEACON, end + 100.0, end + 200.0) == []
     assert listening.state == "ok"
     await listening.stop()
     assert listening.state == "off"
@@ -66,7 +67,7 @@ async def test_samples_that_come_late_are_waited_for() -> None:
     listening.start()
     async with asyncio.timeout(60):
         await listening.heard_until(due_s)
-    in_time = listening.between(due_s - 2.0, due_s, CARRIER_HZ)
+    in_time = listening.of(BEACON, due_s - 2.0, due_s)
     assert [s.at_s for s in in_time] == pytest.approx([due_s - 1.0, due_s - 0.5, due_s])
     await listening.stop()
 
@@ -159,7 +160,7 @@ async def test_each_channel_keeps_its_own_samples() -> None:
     now = clock.now()
     await listening.heard_until(now)
     for frequency_hz in (CARRIER_HZ, TAG_HZ):
-        found = listening.between(0.0, now, frequency_hz)
+        found = listening.of(EmitterSpec(frequency_hz=frequency_hz), 0.0, now)
         assert found
         assert {sample.frequency_hz for sample in found} == {frequency_hz}
     await listening.stop()
@@ -225,3 +226,47 @@ def test_emitters_that_share_a_frequency_are_heard_together() -> None:
     others = [EmitterSpec(emitter_id=name, frequency_hz=CARRIER_HZ) for name in ("one", "other")]
     mission = MissionSpec(name="m", area=AREA, emitters=[*others, tag])
     assert channels_of(mission) == (CARRIER, TAG)
+
+
+async def test_a_change_of_channels_leaves_out_and_counts_what_was_heard_before_the_receiver_settled() -> None:
+    clock = ScaledClock(factor=50.0)
+    receiver = HummingReceiver(clock)
+    listening = Listening(receiver, clock, (CARRIER, TAG), silent_after_s=5.0, first=(CARRIER,))
+    listening.start()
+    assert await listening.first_sample(CARRIER_HZ, 5.0)
+    assert receiver.frequencies_hz == [CARRIER_HZ]
+    changed_s = clock.now()
+    humming = receiver.samples
+
+    async def stale_first() -> AsyncIterator[PowerSample]:
+        yield PowerSample(changed_s - 1.0, TAG_HZ, -30.0)
+        async for sample in humming():
+            yield sample
+
+    receiver.samples = stale_first  # type: ignore[method-assign]
+    await listening.hear((TAG,))
+    assert receiver.frequencies_hz == [TAG_HZ]
+    assert (listening.hears(BEACON), listening.hears(EmitterSpec(frequency_hz=TAG_HZ))) == (False, True)
+    assert await listening.first_sample(TAG_HZ, 5.0)
+    assert listening.state == "ok"
+    first = listening.of(EmitterSpec(frequency_hz=TAG_HZ), 0.0, clock.now())[0]
+    assert first.at_s >= changed_s + module.SETTLING_S
+    assert listening.settling_samples >= 1
+    await listening.hear((TAG,))
+    last = listening.last(CARRIER_HZ)
+    assert last is not None
+    assert last.at_s <= changed_s + 0.5, "the carrier is not listened to any more"
+    await listening.stop()
+
+
+async def test_a_change_that_is_called_off_leaves_a_receiver_that_listens() -> None:
+    clock = ScaledClock(factor=50.0)
+    listening = Listening(HummingReceiver(clock), clock, (CARRIER, TAG), silent_after_s=5.0, first=(CARRIER,))
+    listening.start()
+    assert await listening.first_sample(CARRIER_HZ, 5.0)
+    changing = asyncio.create_task(listening.hear((TAG,)))
+    await asyncio.sleep(0)
+    changing.cancel()
+    await asyncio.gather(changing, return_exceptions=True)
+    assert await listening.first_sample(TAG_HZ, 5.0)
+    await listening.stop()

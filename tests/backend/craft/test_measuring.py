@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import AsyncIterator
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from equipment import SECOND_HZ, TWO_EMITTERS, spec
@@ -19,7 +20,7 @@ from backend.spec import EmitterSpec, MissionSpec
 from hardware.ports import ReceiverError, VehicleError
 from hardware.readings import BearingReading, PowerSample
 from hardware.reasons.receiver import NothingHeardInTurn
-from hardware.reasons.sweep import NoPulseHeard
+from hardware.reasons.sweep import NoPulseHeard, PulsesNotGiven
 from hardware.reasons.vehicle import PositionLost
 from hardware.reasons.vehicle_news import ClockRateOdd
 
@@ -118,3 +119,55 @@ async def test_without_any_position_there_is_an_error_and_no_made_up_place() -> 
     with refusing(PositionLost, VehicleError):
         await measured(stage)
     assert stage.vehicle.names == ["turn"]
+
+
+async def test_a_narrow_receiver_goes_round_once_for_each_group_that_is_wanted() -> None:
+    stage = Stage(target=(0.0, 60.0), others={SECOND_HZ: (60.0, 0.0)})
+    mission = spec(TWO_EMITTERS)
+    mission = mission.model_copy(update={"sensor": mission.sensor.model_copy(update={"receiver_band_hz": 25e3})})
+    found = await measured(stage, mission)
+    assert stage.vehicle.names == ["turn", "turn"]
+    bearings = {m.fact.emitter_id: m.fact.bearing_deg for m in found if isinstance(m.fact, BearingMeasured)}
+    assert list(bearings.values()) == pytest.approx([0.0, 90.0], abs=1e-6)
+    assert stage.receiver.frequencies_hz == [max(emitter.frequency_hz for emitter in TWO_EMITTERS)]
+
+    listening = Listening(stage.receiver, stage.clock, channels_of(mission), 5.0)
+    listening.start()
+    wanted = TWO_EMITTERS[0].emitter_id
+    (only,) = await measure(stage.craft(), mission, "m", listening, 2, 1, [wanted])
+    await listening.stop()
+    assert only.fact.emitter_id == wanted
+    assert stage.vehicle.names == ["turn"] * 3
+
+
+async def test_tags_at_one_frequency_have_sweeps_of_their_own_pulses() -> None:
+    stage = Stage()
+    tags = [
+        EmitterSpec(
+            emitter_id=f"tag-{k}", frequency_hz=150e6, kind="pulsed", pulse_width_s=0.02, pulse_period_s=period_s
+        )
+        for k, period_s in enumerate((0.5, 0.4))
+    ]
+
+    async def both() -> AsyncIterator[PowerSample]:
+        began_s = stage.clock.now()
+        strangers = [began_s + 0.031 + 0.917 * k for k in range(1000)]
+        due = sorted([began_s + 0.1 + 0.5 * k for k in range(2000)] + [began_s + 0.23 + 0.4 * k for k in range(2500)])
+        due = sorted([*due, *strangers[::7]])
+        for at_s in due:
+            while stage.clock.now() < at_s:
+                await stage.clock.sleep(0.1)
+            yield PowerSample(at_s, 150e6, -60.0)
+
+    stage.receiver.samples = both  # type: ignore[method-assign]
+    mission = spec(tags)
+    mission = mission.model_copy(update={"sensor": mission.sensor.model_copy(update={"pulses_per_heading": 1})})
+    found = await measured(stage, mission)
+    heard = {m.fact.emitter_id: m.sweep for m in found}
+    for emitter_id, period_s in (("tag-0", 0.5), ("tag-1", 0.4)):
+        sweep = heard[emitter_id]
+        assert sweep is not None, [m.fact for m in found]
+        gaps = [b - a for a, b in pairwise(sweep.at_s)]
+        assert all(gap / period_s == pytest.approx(round(gap / period_s), abs=0.02) for gap in gaps)
+    remarks = [remark for m in found if isinstance(m.fact, BearingMeasured) for remark in m.fact.remarks]
+    assert any(isinstance(remark, PulsesNotGiven) for remark in remarks), "a stranger's are counted"

@@ -7,7 +7,8 @@ import pytest
 from equipment import spec
 
 from backend.craft.listening import channel_of
-from backend.craft.sweep_turns import MOST_TURNS, SLOWEST_DEG_S, complete, turn_rate_deg_s
+from backend.craft.sweep_turns import complete
+from backend.search.turn_schedule import MOST_TURNS, SLOWEST_DEG_S, turn_schedule
 from backend.spec import EmitterSpec, MissionSpec, SensorSpec
 from hardware.readings import HeadingSample, PowerSample, Pulses
 
@@ -21,6 +22,11 @@ def tag(period_s: float = PERIOD_S) -> EmitterSpec:
 def mission(*emitters: EmitterSpec, pulses: int = 2, rate: float = 30.0) -> MissionSpec:
     sensor = SensorSpec(pulses_per_heading=pulses, turn_rate_deg_s=rate)
     return spec(emitters or (tag(),)).model_copy(update={"sensor": sensor})
+
+
+def rate_of(mission: MissionSpec) -> float:
+    (once,) = turn_schedule(mission).rounds
+    return once.rate_deg_s
 
 
 def turned(seconds: float, degrees: float = 360.0, start: float = 0.0) -> list[HeadingSample]:
@@ -40,19 +46,19 @@ def pulses(seconds: float, deaf: tuple[float, float] = (0.0, 0.0), first: float 
 
 
 def test_a_carrier_turns_as_specified() -> None:
-    assert turn_rate_deg_s(spec()) == spec().sensor.turn_rate_deg_s
+    assert rate_of(spec()) == spec().sensor.turn_rate_deg_s
 
 
 def test_a_tag_turns_slowly_enough_for_its_pulses_and_never_faster_than_specified() -> None:
-    seconds = 360.0 / turn_rate_deg_s(mission())
+    seconds = 360.0 / rate_of(mission())
     assert seconds >= 16 * 2 * PERIOD_S
     assert complete(tag(), 2, pulses(seconds), turned(seconds))
-    assert turn_rate_deg_s(mission(rate=5.0)) == 5.0
+    assert rate_of(mission(rate=5.0)) == 5.0
 
 
 def test_of_several_tags_the_slowest_sets_the_turn() -> None:
-    slow = turn_rate_deg_s(mission(tag(2.0)))
-    assert turn_rate_deg_s(mission(tag(), EmitterSpec(), tag(2.0))) == slow < turn_rate_deg_s(mission(tag()))
+    slow = rate_of(mission(tag(2.0)))
+    assert rate_of(mission(tag(), EmitterSpec(), tag(2.0))) == slow < rate_of(mission(tag()))
 
 
 def test_bursts_every_fifty_seconds_are_turned_for_as_slowly_as_may_be() -> None:
@@ -60,7 +66,7 @@ def test_bursts_every_fifty_seconds_are_turned_for_as_slowly_as_may_be() -> None
     beacon = EmitterSpec(
         frequency_hz=406.028e6, kind="pulsed", pulse_width_s=0.44, pulse_period_s=50.0, pulse_jitter_s=2.5
     )
-    rate = turn_rate_deg_s(mission(beacon))
+    rate = rate_of(mission(beacon))
     assert rate == SLOWEST_DEG_S
     assert channel_of(beacon).pulses == Pulses(0.44, 50.0, 2.5)
     assert 10 < MOST_TURNS * 360.0 / rate / beacon.pulse_period_s < 12
@@ -74,7 +80,7 @@ def test_headings_that_missed_their_pulses_ask_for_another_turn(lost: tuple[floa
 @pytest.mark.parametrize("turning", [turned, turned_in_steps])
 @pytest.mark.parametrize("start", np.arange(0.0, 22.5, 2.5))
 def test_one_turn_is_enough_wherever_it_begins_and_whenever_the_tag_sends(turning, start: float) -> None:
-    seconds = 360.0 / turn_rate_deg_s(mission())
+    seconds = 360.0 / rate_of(mission())
     headings = turning(seconds, start=start)
     asked_again = [
         first

@@ -12,7 +12,7 @@ from backend.cli.demo import CARRIER, simulated, sought
 from backend.events import BearingMeasured, CraftSource
 from backend.search.localization import Localization, localization
 from backend.search.planning import next_place_together
-from backend.simulation.emitters import emitter_places
+from backend.simulation.emitters import Signal, emitter_places
 from hardware.readings import Place
 
 HOME = Place(50.6234, 7.2046)
@@ -58,7 +58,7 @@ def test_no_turn_is_taken_twice_at_one_place_and_all_are_localized() -> None:
         places.append(here)
         wanted = []
         for task in tasks:
-            emitter = truth[mission.emitter(task.emitter_id).frequency_hz]
+            emitter = truth[Signal(mission.emitter(task.emitter_id).frequency_hz)]
             facts = measured[task.emitter_id]
             facts.append(heard(task, number, chosen.place, emitter, OWN_DEG * float(rng.standard_normal())))
             if not task.belief_fact(facts)[0].localized:

@@ -6,7 +6,7 @@ from shapely import Point
 
 from backend.api.suggestion import suggested_mission
 from backend.search.area import target_area
-from backend.simulation.emitters import EMITTERS, SimulatedEmitter, emitter_places
+from backend.simulation.emitters import EMITTERS, Signal, SimulatedEmitter, emitter_places
 from backend.simulation.walls import walls
 from hardware.frame import LocalFrame
 from hardware.readings import Place
@@ -26,7 +26,7 @@ def test_the_simulated_emitters_stand_in_the_suggested_area_by_the_seed(seed: in
 
 
 def test_another_seed_is_another_place() -> None:
-    assert len({emitter_places(seed, HOME, EMITTERS)[868.3e6] for seed in range(20)}) == 20
+    assert len({emitter_places(seed, HOME, EMITTERS)[Signal(868.3e6)] for seed in range(20)}) == 20
 
 
 def test_emitters_of_one_megahertz_stand_apart_and_move_no_other() -> None:
@@ -34,7 +34,7 @@ def test_emitters_of_one_megahertz_stand_apart_and_move_no_other() -> None:
     places = emitter_places(3, HOME, close)
     assert len(set(places.values())) == 3
     usual = emitter_places(3, HOME, EMITTERS)
-    assert (places[868.3e6], places[150e6]) == (usual[868.3e6], usual[150e6])
+    assert all(places[signal] == usual[signal] for signal in (Signal(868.3e6), Signal(150e6, 1.3)))
 
 
 def test_the_walls_of_the_multipath_world_stand_around_the_area_by_its_seed() -> None:

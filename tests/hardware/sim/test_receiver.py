@@ -11,10 +11,12 @@ from stepped_clock import SteppedClock
 
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.direction_finding.rhythm import whose_pulses
 from hardware.direction_finding.sweep import assemble_sweep
 from hardware.frame import LocalFrame
 from hardware.ports import ReceiverError
 from hardware.readings import Channel, HeadingSample, Place, PowerSample, Pulses, Sweep, Telemetry
+from hardware.reasons.channels import BandTooNarrow
 from hardware.reasons.receiver import ReceiverNotOpen, ReceiverUnplugged
 from hardware.sim.pose_track import PoseTrack
 from hardware.sim.receiver import SimulatedReceiver
@@ -230,3 +232,68 @@ async def test_a_receiver_without_telemetry_lives_and_delivers_nothing_that_coun
     assert len(late) > 10
     assert not any(sample.detected for sample in late)
     assert {sample.at_s for sample in late} == {late[0].at_s}
+
+
+PERIODS_S = (1.3, 1.05)
+SHARED = Channel(FREQUENCY_HZ, Pulses(0.02, PERIODS_S[0]), (Pulses(0.02, PERIODS_S[1]),))
+
+
+def world_with_two_tags(phases_s: tuple[float, float] = (0.4, 0.9)) -> World:
+    world = world_with_emitter_at(60.0, 150.0)
+    first, second = world.emitters[0], world_with_emitter_at(200.0, 180.0).emitters[0]
+    tags = (
+        dataclasses.replace(first, pulse_period_s=PERIODS_S[0], pulse_phase_s=phases_s[0]),
+        dataclasses.replace(second, pulse_period_s=PERIODS_S[1], pulse_phase_s=phases_s[1], clock_error=0.004),
+    )
+    return dataclasses.replace(world, emitters=tags)
+
+
+async def test_two_tags_at_one_frequency_are_heard_each_at_its_own_times_and_told_apart() -> None:
+    clock = SteppedClock(1_000_000.0)
+    world = world_with_two_tags()
+    receiver = SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock)
+    heard = [sample for sample in await listen(receiver, 60.0, SHARED) if sample.detected]
+    at_s = [sample.at_s for sample in heard]
+    assert at_s == sorted(at_s)
+    whose = whose_pulses(at_s, SHARED.rhythms)
+    for number, tag in enumerate(world.emitters):
+        assert tag.beat is not None
+        own = [moment for moment, by in zip(at_s, whose, strict=True) if by == number]
+        assert len(own) > 0.75 * 60.0 / PERIODS_S[number]
+        assert tag.beat.sends(np.array(own)).all()
+
+
+async def test_pulses_that_fall_together_are_heard_as_one() -> None:
+    clock = SteppedClock(1_000_000.0)
+    world = world_with_two_tags()
+    begin = world.emitters[0].beat
+    assert begin is not None
+    together = dataclasses.replace(world.emitters[0], pulse_phase_s=begin.phase_s + 0.008)
+    receiver = SimulatedReceiver(
+        dataclasses.replace(world, emitters=(world.emitters[0], together)), TurningVehicle(clock).telemetry, clock
+    )
+    heard = await listen(receiver, 26.0, SHARED)
+    assert np.diff([sample.at_s for sample in heard]).min() > 1.0
+
+
+async def test_a_single_tag_is_heard_as_before_beside_another_at_its_frequency() -> None:
+    clock = SteppedClock(1_000_000.0)
+    receiver = SimulatedReceiver(world_with_two_tags(), TurningVehicle(clock).telemetry, clock)
+    for pulses, gap_s in zip(SHARED.rhythms, (PERIODS_S[0], PERIODS_S[1] * 1.004), strict=True):
+        heard = await listen(receiver, 20.0, Channel(FREQUENCY_HZ, pulses))
+        assert np.diff([sample.at_s for sample in heard]) == pytest.approx(gap_s, abs=1e-3)
+
+
+async def test_a_narrow_receiver_refuses_what_its_band_does_not_hold_and_locks_late() -> None:
+    clock = SteppedClock(1_000_000.0)
+    world = world_with_emitter_at(60.0, 150.0)
+    receiver = SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock, band_hz=25e3)
+    with refusing(BandTooNarrow(25e3, 54e3, (FREQUENCY_HZ + 50e3,)), ReceiverError):
+        await receiver.open([CARRIER, Channel(FREQUENCY_HZ + 50e3)])
+    began_s = clock.now()
+    heard = await listen(receiver, 5.0)
+    wide = await listen(SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock), 5.0)
+    early = [sample.power_db for sample in heard if sample.at_s < began_s + 0.2]
+    assert early
+    assert min(early) > max(sample.power_db for sample in wide) or len(set(early)) == 1
+    assert len(heard) > 90

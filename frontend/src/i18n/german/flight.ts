@@ -101,6 +101,20 @@ export const flight = {
     text: "{places|Ort wurde|Orte wurden} zuerst für ihn gewählt, und er ist nicht gefunden; nun kommen die anderen zuerst.",
     remedy: "Die Reihenfolge erneut setzen, um ihn trotzdem zuerst zu suchen.",
   },
+  frequency_shared: {
+    text: "Zwei Sender senden auf {frequency_hz}, und nicht beide mit Pulsen: Kein Empfänger kann sie unterscheiden.",
+    remedy: "Einen nach dem anderen suchen; Tiersender auf einer Frequenz unterscheidet ihre Periode.",
+  },
+  too_many_rhythms: {
+    text: "Mehr als {most} Tiersender senden auf {frequency_hz}: Zu viele ihrer Pulse fallen zusammen.",
+    remedy: "Höchstens {most} zugleich suchen.",
+  },
+  rhythms_too_alike: {
+    text: "Auf {frequency_hz} sendet einer alle {first_s:3} und ein anderer alle {second_s:3}: Ihre Rhythmen sind zu ähnlich.",
+    remedy:
+      "Sender, die so schwanken, sind ab {needed_s:3} Unterschied der Perioden zu unterscheiden. Einen nach dem anderen suchen " +
+      "oder eine kleinere Schwankung angeben, wenn ihre kleiner ist.",
+  },
   quality_too_low: { text: "Die Güte {quality:2} liegt unter {wanted:2}.", remedy: "Die Drehung wiederholen." },
 
   told_before: { text: "{text}", remedy: "{remedy}" },

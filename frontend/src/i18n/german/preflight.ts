@@ -125,6 +125,16 @@ export const preflight = {
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },
   receiver_delivers: { text: "Der Empfänger liefert Messwerte auf {channels|Kanal|Kanälen}.", remedy: "" },
+  receiver_takes_turns: {
+    text:
+      "Der Empfänger arbeitet. In sein Band passen die {channels} Kanäle in {rounds} Gruppen, eine nach der anderen: Für jede dreht " +
+      "es einmal ganz, das dauert an jedem Ort {turn_s}, und weniger, wenn Sender gefunden sind.",
+    remedy: "",
+  },
+  turn_takes_long: {
+    text: "Der Empfänger arbeitet. Die Pulse kommen so selten, dass eine Drehung an jedem Ort bis zu {turn_s} dauert.",
+    remedy: "Weniger Pulse je Richtung verkürzen sie; darauf achten, dass die Batterie für zwei Drehungen reicht.",
+  },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
     remedy: "Prüfen, ob er angesteckt ist und kein anderes Programm ihn benutzt.",

@@ -59,7 +59,8 @@ export const receiver = {
   },
   band_too_narrow: {
     text: "Mit einer Abtastrate von {sample_rate_hz} kann der Empfänger {refused_hz} nicht zugleich mit den anderen hören.",
-    remedy: "Die Abtastrate auf {needed_hz} erhöhen oder {refused_hz} in einer eigenen Suche suchen.",
+    remedy:
+      "Die Abtastrate auf {needed_hz} erhöhen oder in der Mission angeben, wie breit das Band des Empfängers ist: Dann hört er sie nacheinander.",
   },
   outside_band: {
     text: "Eine Abtastrate von {sample_rate_hz} um {centre_hz} reicht nicht bis {refused_hz}.",

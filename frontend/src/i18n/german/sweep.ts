@@ -6,6 +6,18 @@ export const sweep = {
     text: "In keiner Richtung war ein Puls des Senders zu hören.",
     remedy: "Ihn einschalten oder näher bei ihm messen.",
   },
+  pulses_not_given: {
+    text:
+      "Auf dieser Frequenz senden mehrere: {given} Pulse sind zugeordnet; {overlapping} von zweien zugleich, {unclear}, die von " +
+      "mehr als einem sein könnten, und {strangers}, die zu keinem passen, zählen für keinen.",
+    remedy: "",
+  },
+  rhythm_not_heard: {
+    text:
+      "Im Rhythmus dieses Senders war kein Puls zu hören; auf seiner Frequenz waren es {given} Pulse anderer und {left}, die für " +
+      "keinen zählen.",
+    remedy: "Näher bei ihm messen; seine Periode und deren Schwankung in der Mission prüfen.",
+  },
   readings_left_out: {
     text:
       "{readings|Messwert|Messwerte} weggelassen: {why?heading_unknown=keine Richtung nahe genug in der Zeit" +

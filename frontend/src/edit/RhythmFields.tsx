@@ -1,0 +1,55 @@
+// A tag's pulses: of all tags of a list alike, since one list is of one kind of tag. The periods of several are in the list.
+import { type MessageKey, t } from "../i18n";
+import type { RequestFailed } from "../sources/problem";
+import type { EmitterSpec } from "../wire";
+import { draft, type, update } from "./draft";
+import { EMITTER, firstEmitter } from "./emitter";
+import { Message } from "./FormField";
+import { typedNumber } from "./fields";
+
+type Name = "pulse_period_s" | "pulse_width_s" | "pulse_jitter_s";
+
+function PulseNumber({ name, label, failed }: { name: Name; label: MessageKey; failed: RequestFailed | null }) {
+  const { spec, text } = draft.value!;
+  const path = `${EMITTER}.${name}`;
+  const [id, raw] = [`field-${path.replaceAll(".", "-")}`, text[path]];
+  const message = raw !== undefined ? t("edit.notNumber") : (failed?.fieldMessage(path) ?? null);
+  const take = (words: string) => {
+    const value = typedNumber(words);
+    if (value === null) return type(path, words);
+    type(path, null);
+    const now = draft.peek()!;
+    const emitters = now.spec.emitters.map((emitter): EmitterSpec => ({ ...emitter, [name]: value }));
+    update({ ...now, spec: { ...now.spec, emitters } });
+  };
+  return (
+    <div class="field">
+      <label for={id}>{t(label)}</label>
+      <span class="field-input">
+        <input
+          id={id}
+          data-testid={id}
+          inputMode="decimal"
+          value={raw ?? String(firstEmitter(spec)[name])}
+          aria-invalid={message !== null}
+          aria-describedby={message ? `${id}-message` : undefined}
+          onChange={(e) => take(e.currentTarget.value)}
+        />
+        <span class="unit">s</span>
+      </span>
+      <Message id={id} text={message} />
+    </div>
+  );
+}
+
+export function RhythmFields({ failed }: { failed: RequestFailed | null }) {
+  const { emitters } = draft.value!.spec;
+  if (emitters[0]!.kind !== "pulsed") return null;
+  return (
+    <>
+      {emitters.length === 1 && <PulseNumber name="pulse_period_s" label="edit.pulsePeriod" failed={failed} />}
+      <PulseNumber name="pulse_width_s" label="edit.pulseWidth" failed={failed} />
+      <PulseNumber name="pulse_jitter_s" label="edit.pulseJitter" failed={failed} />
+    </>
+  );
+}
