@@ -21,8 +21,8 @@ def _mean_distance(mass, x, y, px, py):
 def geometric_median(
     mass: FloatArray, x: FloatArray, y: FloatArray, tried: IntArray, tolerance: float, steps: int
 ) -> tuple[float, float]:
-    """As `estimate.geometric_median` finds it among points (n,) of mass 1, in so many steps at most. tried: (k,) indices
-    of points to try besides; of equally good ones the first."""
+    """As `estimate.geometric_median` finds it among points (n,) of mass 1, in so many steps at most. tried: (k,) which
+    points to try besides; of equally good ones the first."""
     mass, x, y = (np.ascontiguousarray(one, dtype=float) for one in (mass, x, y))
     px, py = _median(mass, x, y, tried, tolerance, steps)
     return float(px), float(py)
