@@ -33,7 +33,7 @@ UNHEARD_PLACES = 3
 UNCLEAR_PLACES = 5
 """In a row. One wrong bearing among others contradicts them for good, and is outvoted by two or three more."""
 FIRST_PLACES = 10
-"""Chosen for it first. The first of four tags took 3.6 bearings in the mean of the simulated missions, 5 at most."""
+"""Chosen for it first. The first of four tags took 3.6 bearings in the mean of 46 simulated missions, 5 at most."""
 
 SetBack = UnheardForLong | UnclearForLong | FirstForLong
 
