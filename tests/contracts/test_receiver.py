@@ -218,7 +218,7 @@ async def test_of_several_tags_at_one_frequency_every_pulse_is_heard(receiver: R
         with refusing(CarriersOnly(SHARED.frequency_hz), ReceiverError):
             await receiver.open([SHARED])
         return
-    heard = [sample for sample in (await hear_each(receiver, [SHARED], 20))[SHARED.frequency_hz] if sample.detected]
+    heard = [sample for sample in (await hear_each(receiver, [SHARED], 12))[SHARED.frequency_hz] if sample.detected]
     assert all(a.at_s < b.at_s for a, b in itertools.pairwise(heard))
     if isinstance(receiver, LoopbackPayload):
         assert receiver.hub.channels is not None
