@@ -4830,8 +4830,8 @@ export interface components {
         };
         /**
          * @description One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
-         *     `ended_at_utc`, `outcome`: None until it happened. `gone_at_utc`: until when a deleted one can be restored. `iq_bytes`:
-         *     of the IQ that can be exported as SigMF, 0: none was kept.
+         *     `ended_at_utc`, `outcome`: None until it happened. `gone_at_utc`: until when a deleted one can be restored.
+         *     `iq_bytes`: of the IQ that can be exported as SigMF, 0: none was kept.
          */
         MissionSummary: {
             mission_id: string;
