@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,12 +99,18 @@ class Pose:
     lean: Lean = UPRIGHT
 
 
-def as_leaning(east: float, north: float, up: float, lean: Lean) -> tuple[float, float, float]:
+Coordinate = TypeVar("Coordinate", float, NDArray[np.float64])
+
+
+def as_leaning(
+    east: Coordinate, north: Coordinate, up: Coordinate, lean: tuple[Coordinate, Coordinate]
+) -> tuple[Coordinate, Coordinate, Coordinate]:
     """A direction as a vehicle has it whose upright axis leans: what lies where it leans to stands higher for it."""
-    angle = math.hypot(*lean)
-    to_east, to_north = lean[0] / angle, lean[1] / angle
+    angle = np.hypot(*lean)
+    upright = angle == 0.0
+    to_east, to_north = lean[0] / (angle + upright) + upright, lean[1] / (angle + upright)
     along, across = east * to_east + north * to_north, north * to_east - east * to_north
-    along, up = along * math.cos(angle) - up * math.sin(angle), along * math.sin(angle) + up * math.cos(angle)
+    along, up = along * np.cos(angle) - up * np.sin(angle), along * np.sin(angle) + up * np.cos(angle)
     return along * to_east - across * to_north, along * to_north + across * to_east, up
 
 
@@ -221,11 +228,25 @@ class RadioLink:
         lean: Lean = UPRIGHT,
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) readings in dBm and whether each clipped: mean of |signal + noise|^2 over `averages` draws, jittered."""
+        return self._read(self.amplitudes(at_s, place, height_m, heading_deg, lean))
+
+    def powers_dbm_of(
+        self, at_s: NDArray[np.float64], received: NDArray[np.complex128]
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """The same of fields (n,) as they are received without fading, sqrt mW, each read by itself: what chance there
+        is comes in the order of `power_dbm`."""
+        readings = [
+            self._read(np.array([amplitude * self._fading.gain(float(t))]))
+            for t, amplitude in zip(at_s, received, strict=True)
+        ]
+        return np.array([power[0] for power, _ in readings]), np.array([clipped[0] for _, clipped in readings])
+
+    def _read(self, amplitude: NDArray[np.complex128]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         front_end = self.world.front_end
-        signal_mw = np.abs(self.amplitudes(at_s, place, height_m, heading_deg, lean)) ** 2
+        signal_mw = np.abs(amplitude) ** 2
         noise_mw = 10.0 ** (front_end.noise_dbm / 10.0)
         # mean of n draws of |s + w|^2: mean S + N, variance (2 S N + N^2) / n
         spread = np.sqrt((2.0 * signal_mw * noise_mw + noise_mw**2) / front_end.averages)
-        reading_mw = np.maximum(signal_mw + noise_mw + spread * self._rng.normal(size=at_s.size), 0.05 * noise_mw)
-        reading_dbm = 10.0 * np.log10(reading_mw) + front_end.jitter_db * self._rng.normal(size=at_s.size)
+        reading_mw = np.maximum(signal_mw + noise_mw + spread * self._rng.normal(size=signal_mw.size), 0.05 * noise_mw)
+        reading_dbm = 10.0 * np.log10(reading_mw) + front_end.jitter_db * self._rng.normal(size=signal_mw.size)
         return np.minimum(reading_dbm, front_end.clip_dbm), reading_dbm >= front_end.clip_dbm
