@@ -43,10 +43,12 @@ ROWS: Mapping[str, FieldOptions] = {
     "random_walk": FieldOptions("random_walk"),
     "gyration": FieldOptions("gyration"),
 }
-"""wedge: each bearing by itself, as before errors were estimated with the place; widened: its sigmas by `WIDENED`."""
-WIDENED: Mapping[str, float] = {}
-"""What the wedge's sigmas are multiplied by in each setting, so that C95 at the claim holds the truth as often as it
-says (tests.benchmarks.field_widening, seeds that no row is flown on)."""
+"""wedge: each bearing by itself, as before errors were estimated with the place; widened: its sigmas multiplied by what
+`WIDENINGS` has for the setting. wedge*1.5 is a row, too: multiplied by that."""
+WIDENINGS = Path(__file__).parents[2] / "docs" / "measurements" / "study_field_widening.json"
+"""How much wider a wedge has to be, for C95 at the claim to hold the truth as often as it says: as
+tests.benchmarks.field_widening found it, on seeds on which no row is flown."""
+WIDENING = "sigma times, "
 AGAINST, WIDE = "whole", "widened"
 JUDGED = {"sector": "adaptive_turns", "swings": "listening"}
 """Ahead of the widened wedge."""
@@ -83,12 +85,19 @@ class Setting:
         return f"{self.antenna}, {'compass sd 4' if self.compass_deg is None else f'compass {self.compass_deg:g}'}"
 
     def options(self, row: str) -> FieldOptions:
-        """Of a row flown so. row: of `ROWS`, or wedge*1.5: its sigmas widened by that."""
+        """Of a row flown so. ValueError for a widened wedge where nobody found how wide."""
         base, _, factor = row.partition("*")
-        if row == WIDE and self.name not in WIDENED:
-            raise SystemExit(f"how wide a wedge is true with {self.name} was not found: see field_widening")
-        widened = float(factor) if factor else WIDENED[self.name] if row == WIDE else 1.0
+        widened = float(factor) if factor else widening_in(self) if row == WIDE else 1.0
         return replace(ROWS[base], compass_deg=self.compass_deg, antenna=self.antenna, sigma_factor=widened)
+
+
+def widening_in(setting: Setting) -> float:
+    """As recorded; ValueError when it is not."""
+    told = json.loads(WIDENINGS.read_text())["figures"] if WIDENINGS.exists() else []
+    found = {one["name"].partition(WIDENING)[2]: one["value"] for one in told}
+    if setting.name not in found:
+        raise ValueError(f"no wedge as wide as true is recorded for {setting.name}: field_widening finds it")
+    return float(found[setting.name])
 
 
 Flown = Mapping[str, Mapping[int, FieldMission]]
@@ -100,11 +109,11 @@ def flown(
 ) -> dict[Setting, dict[str, dict[int, FieldMission]]]:
     """kept: folder of what was flown before, and of what is. told: nothing is flown; each setting has the seeds that
     all of its rows have."""
-    found = {one: {name: _kept(kept, one, name) for name in names} for one in settings}
+    found = {one: {name: _kept(kept, one, name) for name in names if _known(one, name)} for one in settings}
     studies = dict[tuple[Setting, str], FieldStudy]()
     for seed, one, name in product(() if told else seeds, settings, names):
-        missions = found[one][name]
-        if seed in missions:
+        missions = found[one].get(name)
+        if missions is None or seed in missions:
             continue
         if (one, name) not in studies:
             studies[one, name] = FieldStudy.of(one.options(name))
@@ -112,6 +121,15 @@ def flown(
         _keep(kept, one, name, missions[seed])
         print(f"{one.name}, {name}, {seed}: {missions[seed].time_s:.0f} s", file=sys.stderr, flush=True)
     return {one: _common(rows, seeds) for one, rows in found.items()}
+
+
+def _known(setting: Setting, name: str) -> bool:
+    try:
+        setting.options(name)
+    except ValueError as error:
+        print(f"{name} is left out: {error}", file=sys.stderr)
+        return False
+    return True
 
 
 def _common(rows: Flown, seeds: range) -> dict[str, dict[int, FieldMission]]:
@@ -122,6 +140,7 @@ def _common(rows: Flown, seeds: range) -> dict[str, dict[int, FieldMission]]:
 
 
 def _path(folder: Path, setting: Setting, name: str) -> Path:
+    name = f"wedge*{widening_in(setting):g}" if name == WIDE else name  # another factor is another row
     return folder / f"{name}, {setting.name}.jsonl".replace(", ", "-").replace(" ", "_")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,8 +20,10 @@ def row(*times: float) -> dict[int, FieldMission]:
 
 
 @pytest.fixture(autouse=True)
-def _widened(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(field_world, "WIDENED", {SETTING.name: 1.7})
+def _recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "widening.json"
+    path.write_text(json.dumps({"figures": [{"name": f"A wedge: {field_world.WIDENING}{SETTING.name}", "value": 1.7}]}))
+    monkeypatch.setattr(field_world, "WIDENINGS", path)
 
 
 def test_rows_are_compared_mission_by_mission() -> None:
@@ -57,5 +60,14 @@ def test_settings_are_each_antenna_with_each_compass() -> None:
 
 def test_the_widened_wedge_is_the_wedge_with_the_factor_of_its_setting() -> None:
     assert SETTING.options("widened") == SETTING.options("wedge*1.7") != SETTING.options("wedge")
-    with pytest.raises(SystemExit, match="wide, compass 8"):
-        field_world.Setting(8.0, "wide").options("widened")
+
+
+def test_a_setting_in_which_no_wedge_was_widened_goes_without(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = field_world.Setting(8.0, "wide")
+    for one, name in ((SETTING, "whole"), (SETTING, "widened"), (other, "whole")):
+        field_world._keep(tmp_path, one, name, FLOWN)
+    found = field_world.flown(["whole", "widened"], [SETTING, other], range(FLOWN.seed, FLOWN.seed + 1), tmp_path)
+    assert [list(rows) for rows in found.values()] == [["whole", "widened"], ["whole"]]
+    assert "widened is left out: no wedge as wide as true is recorded for wide, compass 8" in capsys.readouterr().err
