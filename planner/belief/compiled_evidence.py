@@ -256,19 +256,6 @@ def _prepared(seen, profiles, bias, spacing, scale, rate):
     return reach, odds, tables, shares, outliers, most_peaks
 
 
-@entry
-def _evidence(x, y, seen, on_way, profiles, bias, spacing, scale, rate, prior, out):
-    _ = SOURCES
-    reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
-    table, density, past = np.empty_like(prior), np.empty(len(bias)), np.empty(most_peaks)
-    sums = np.empty((SUMS, coarse_nodes(len(bias), spacing)))
-    for c in range(len(x)):
-        table[:] = prior
-        log = _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
-        log += weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
-        out.log[c] = outliers + log + np.log(_sums(table, len(rate), out.bias[c], out.scale[c], out.rate[c]))
-
-
 @jit
 def _added(found, table, weight):
     for r in range(found.shape[0]):
@@ -283,22 +270,42 @@ def _scaled(found, factor):
             found[r, b] *= factor
 
 
-@entry
-def _node_evidence(x, y, before, seen, on_way, profiles, bias, spacing, scale, rate, found):
-    """found (k e, b): the sum over the cells, without a factor whose logarithm is returned."""
-    _ = SOURCES
-    reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
-    table, density, past = np.empty_like(found), np.empty(len(bias)), np.empty(most_peaks)
-    sums = np.empty((SUMS, coarse_nodes(len(bias), spacing)))
-    found[:] = 0.0
-    top = before[0]
-    for c in range(len(x)):
-        table[:] = 1.0
-        log = before[c]
-        log += _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
-        log += weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
-        if log > top:
-            _scaled(found, np.exp(top - log))
-            top = log
-        _added(found, table, np.exp(log - top))
-    return outliers + top
+def _entry_points(sources: int):
+    """sources: what is compiled in, as a number. numba tells cached functions apart by what they close over."""
+
+    @entry
+    def evidence_of(x, y, seen, on_way, profiles, bias, spacing, scale, rate, prior, out):
+        _ = sources
+        reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
+        table, density, past = np.empty_like(prior), np.empty(len(bias)), np.empty(most_peaks)
+        sums = np.empty((SUMS, coarse_nodes(len(bias), spacing)))
+        for c in range(len(x)):
+            table[:] = prior
+            log = _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
+            log += weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
+            out.log[c] = outliers + log + np.log(_sums(table, len(rate), out.bias[c], out.scale[c], out.rate[c]))
+
+    @entry
+    def node_evidence_of(x, y, before, seen, on_way, profiles, bias, spacing, scale, rate, found):
+        """found (k e, b): the sum over the cells, without a factor whose logarithm is returned."""
+        _ = sources
+        reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
+        table, density, past = np.empty_like(found), np.empty(len(bias)), np.empty(most_peaks)
+        sums = np.empty((SUMS, coarse_nodes(len(bias), spacing)))
+        found[:] = 0.0
+        top = before[0]
+        for c in range(len(x)):
+            table[:] = 1.0
+            log = before[c]
+            log += _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
+            log += weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
+            if log > top:
+                _scaled(found, np.exp(top - log))
+                top = log
+            _added(found, table, np.exp(log - top))
+        return outliers + top
+
+    return evidence_of, node_evidence_of
+
+
+_evidence, _node_evidence = _entry_points(SOURCES)
