@@ -43,7 +43,6 @@ exact_entry = cast(Compiler, njit(cache=True, nogil=True))
 
 COMPILED_IN = (
     "kernels/**/*.py",
-    "belief/compiled_estimate.py",
     "belief/compiled_evidence.py",
     "belief/compiled_on_the_way.py",
     "belief/estimate.py",

@@ -29,6 +29,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +50,8 @@ LEAST_INDEPENDENT = 0.2
 RING_M = 100.0
 RING = 72
 NEAR_M = 40.0
+_KEPT = 1024
+"""Stretches whose worth is known: a belief is weighed several times with the same ones."""
 DB_PER_NEPER = 20.0 / math.log(10.0)
 DIRECTIONS = 1440
 """Of the tabulated antenna, of which the nearest one counts."""
@@ -121,6 +124,7 @@ def _arrays(stretches: Sequence[Stretch], worth: FloatArray, scales: int) -> Hea
     )
 
 
+@lru_cache(_KEPT)
 def worth_of(stretch: Stretch) -> float:
     """Independent readings besides the one that finds the level; at most what makes it as good as a bearing."""
     if len(stretch.x) < 2:

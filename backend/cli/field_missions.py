@@ -53,10 +53,13 @@ from planner.types import FullMotion
 
 CRAFT_ID = "craft-1"
 HOME = Place(50.6234, 7.2046)
+HOME_XY = (0.0, 0.0)
 SETTLE_S = 4.0
 """After a turn, before the craft flies on."""
 HOVER_W = 250.0
 """Of a multicopter of 2 kg; flown at 8 m/s it needs no less, so that energy is time."""
+HEADING_SIGMA_DEG = 4.0
+"""What the craft states of its heading."""
 FAR_M = 50.0
 """Bearings from nearer do not count in the statistics of bearings, as in the thesis' (6.3.2)."""
 OUTLIER_DEG = 30.0
@@ -74,7 +77,7 @@ Errors = Literal["joint", "independent"]
 class FieldOptions:
     """turns: once around at every place, or as far as needed. turn_rate_deg_s: of a sweep. compass_sd_deg: of the
     flights' heading errors; compass_deg: their heading error, to either side, instead. listens: where. antenna: that is
-    flown. errors: of bearings, as the specification has them. heading_sigma_deg: what the craft states of its heading.
+    flown. errors: of bearings, as the specification has them. sigma_factor: what every bearing's sigma is widened by.
     """
 
     planner: str = "crossfix"
@@ -85,7 +88,7 @@ class FieldOptions:
     compass_deg: float | None = None
     antenna: Antenna = "yagi"
     errors: Errors = "joint"
-    heading_sigma_deg: float = 4.0
+    sigma_factor: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +123,7 @@ def mission_of(options: FieldOptions) -> MissionSpec:
     sensor = spec.sensor.model_copy(
         update={
             "bearing_errors": options.errors,
+            "sigma_deg": options.sigma_factor * spec.sensor.sigma_deg,
             "measurement_time_s": 360.0 / options.turn_rate_deg_s + SETTLE_S,
             "turn_rate_deg_s": options.turn_rate_deg_s,
             "sector_turns": options.turns == "sector",
@@ -143,13 +147,17 @@ class FieldStudy:
     task: Localization
     pattern: AntennaPattern
     finder: SparseDirectionFinder
+    first: tuple[float, float] | None = None
+    """Where missions take their first bearing: what is known before it is the same in all."""
 
     @classmethod
     def of(cls, options: FieldOptions) -> FieldStudy:
         """What all missions of the row have in common."""
         spec = mission_of(options)
-        finder = SparseDirectionFinder(heading_sigma_deg=options.heading_sigma_deg)
-        return cls(options, spec, localization(spec, HOME), antenna_pattern(options.antenna), finder)
+        pattern = antenna_pattern(options.antenna)
+        return cls(
+            options, spec, localization(spec, HOME), pattern, SparseDirectionFinder(heading_sigma_deg=HEADING_SIGMA_DEG)
+        )
 
     def field(self, seed: int) -> Field:
         """Where mission `seed` is flown."""
@@ -165,7 +173,7 @@ class FieldStudy:
         task, rate, field = self.task, self.options.turn_rate_deg_s, self.field(seed)
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
         measured, legs = list[BearingMeasured](), list[HeardOnTheWay]()
-        here, heading, time_s = (0.0, 0.0), 0.0, 0.0
+        here, heading, time_s = HOME_XY, 0.0, 0.0
         sweeps, retakes, passed, turned_deg = 0, 0, 0, 0.0
         way_deg, turned_at = 0.0, list[tuple[float, float]]()
         fact, belief = task.belief_fact(measured)
@@ -273,8 +281,14 @@ class FieldStudy:
         rival = RIVALS.get("fisher" if self.options.planner == GYRATION else self.options.planner)
         if rival is not None:
             return rival(foreseen(task.problem, measured, belief), belief, here, rng)
+        begins = here == HOME_XY and not measured and not task.stretches
+        if begins and self.first is not None:
+            return self.first
         decision = decide(task, belief, measured, here)
-        return decision.x, decision.y
+        place = decision.x, decision.y
+        if begins:
+            self.first = place
+        return place
 
     def _swinging(
         self,
@@ -333,7 +347,13 @@ class FieldStudy:
         )
         duration_s = turned / self.options.turn_rate_deg_s + len(steps) * LOOK_S + SETTLE_S
         fact = sweep_fact(taken, self.spec.sensor, sweep, reading, duration_s)
-        return fact if isinstance(fact, BearingMeasured) else None, turned, 1 + len(steps)
+        return self._widened(fact) if isinstance(fact, BearingMeasured) else None, turned, 1 + len(steps)
+
+    def _widened(self, fact: BearingMeasured) -> BearingMeasured:
+        """As the belief is to read it."""
+        shares = ("sigma_deg", "heading_sigma_deg", "pattern_sigma_deg")
+        wide = {name: self.options.sigma_factor * getattr(fact, name) for name in shares}
+        return fact.model_copy(update=wide)
 
     def _off_deg(self, field: Field, fact: BearingMeasured) -> float | None:
         """What a bearing is off by, the compass' error taken out; None from nearer than FAR_M."""

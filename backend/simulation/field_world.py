@@ -19,6 +19,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from backend.simulation.along import received_along
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.frame import LocalFrame
 from hardware.readings import HeadingSample, Place, PowerSample, Sweep
@@ -26,7 +27,7 @@ from hardware.sim.antenna import YagiOnAirframe
 from hardware.sim.propagation import Fading
 from hardware.sim.turn import turn_once
 from hardware.sim.turntable import OWN_POINTING_SIGMA_DEG, measure_pattern, simulated_antenna
-from hardware.sim.world import Emitter, Lean, Pose, RadioLink, Reflector, World
+from hardware.sim.world import Emitter, RadioLink, Reflector, World
 
 FREQUENCY_HZ = 868_300_000.0
 HEIGHT_M = 40.0
@@ -66,9 +67,10 @@ class Shadow:
         """One realization."""
         return cls(rng.standard_normal((WAVES, 2)) / SHADOW_M, rng.uniform(0.0, 2.0 * math.pi, WAVES))
 
-    def db(self, x: float, y: float) -> float:
-        """What is lost at (x, y), m ENU."""
-        return float(SHADOW_DB * math.sqrt(2.0 / WAVES) * np.cos(self.waves @ np.array([x, y]) + self.phases).sum())
+    def db(self, x: float | NDArray[np.float64], y: float | NDArray[np.float64]) -> NDArray[np.float64]:
+        """What is lost at places of any shape, x, y m ENU."""
+        phase = np.stack(np.broadcast_arrays(x, y), axis=-1) @ self.waves.T + self.phases
+        return np.asarray(SHADOW_DB * math.sqrt(2.0 / WAVES) * np.cos(phase).sum(axis=-1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,22 +119,32 @@ class Field:
         number of the leg alone."""
         rng = np.random.default_rng([self.seed, leg, 4])
         link = RadioLink(dataclasses.replace(self.world, seed=int(rng.integers(2**31))), FREQUENCY_HZ)
-        samples: list[PowerSample] = []
-        headings: list[HeadingSample] = []
-        for k, (east, north, nose) in enumerate(zip(way.x, way.y, way.nose_deg, strict=True)):
-            at_s, place = k / rate_hz, self.frame.to_geo(float(east), float(north))
-            link.world = self._at(float(east), float(north))
-            lean: Lean = (float(way.lean[k, 0]), float(way.lean[k, 1]))
-            power_dbm, clipped = link.power_dbm(at_s, Pose(place, HEIGHT_M, float(nose), lean))
-            samples.append(PowerSample(at_s, FREQUENCY_HZ, power_dbm, link.world.front_end.noise_dbm, clipped))
-            off = REPORTED_M * rng.standard_normal(2)
-            told = self.frame.to_geo(float(east + off[0]), float(north + off[1]))
-            headings.append(HeadingSample(at_s + LATE_S, float(nose) % 360.0, told))
+        way_m, at_s = np.column_stack([way.x, way.y]), np.arange(len(way.x)) / rate_hz
+        told = self.frame.to_lon_lat(way_m + REPORTED_M * rng.standard_normal(way_m.shape))
+        received = received_along(
+            self.world,
+            self.world.emitters[0],
+            np.array(self.frame.to_lon_lat(way_m)),
+            HEIGHT_M,
+            way.nose_deg,
+            way.lean,
+            [shadow.db(way.x, way.y) for shadow in self.shadows],
+        )
+        power_dbm, clipped = link.powers_dbm_of(at_s, received)
+        noise_dbm = self.world.front_end.noise_dbm
+        samples = [
+            PowerSample(float(t), FREQUENCY_HZ, float(power), noise_dbm, bool(clips))
+            for t, power, clips in zip(at_s, power_dbm, clipped, strict=True)
+        ]
+        headings = [
+            HeadingSample(float(t) + LATE_S, float(nose) % 360.0, Place(lat, lon))
+            for t, nose, (lon, lat) in zip(at_s, way.nose_deg, told, strict=True)
+        ]
         return samples, headings
 
     def _at(self, x: float, y: float) -> World:
         """The world as it is shadowed at (x, y)."""
-        direct, *echoes = (shadow.db(x, y) for shadow in self.shadows)
+        direct, *echoes = (float(shadow.db(x, y)) for shadow in self.shadows)
         emitter = dataclasses.replace(self.world.emitters[0], power_dbm=self.world.emitters[0].power_dbm - direct)
         reflectors = tuple(
             dataclasses.replace(one, loss_db=one.loss_db + lost - direct)

@@ -146,8 +146,9 @@ def _poses(
     known &= track_s[after] - track_s[after - 1] <= MAXIMUM_HEADING_GAP_S
     known &= np.abs(nose[after] - nose[after - 1]) <= MAXIMUM_HEADING_STEP_DEG
     sure = np.array([h.position is not None and h.displaced_m <= UNSURE_M for h in track]) & ~_held_up(track)
-    places = [(np.nan, np.nan) if h.position is None else frame.to_enu(h.position) for h in track]
-    x, y = np.array(places).T
+    nowhere = (np.nan, np.nan)
+    lon_lat = np.array([nowhere if h.position is None else (h.position.lon, h.position.lat) for h in track])
+    x, y = frame.to_enu_points(lon_lat).T
     share = (at - track_s[after - 1]) / np.maximum(track_s[after] - track_s[after - 1], 1e-9)
     east, north = (one[after - 1] + share * (one[after] - one[after - 1]) for one in (x, y))
     there = known & sure[after] & sure[after - 1] & np.isfinite(east) & np.isfinite(north)

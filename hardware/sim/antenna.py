@@ -13,12 +13,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+Elevation = float | NDArray[np.float64]
+"""rad, up positive: of all azimuths, or of each."""
+
 
 class AntennaField(Protocol):
     """Complex far field of a receiving antenna, amplitude 1 in the direction of the front, at the horizon."""
 
-    def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: float) -> NDArray[np.complex128]:
-        """azimuth_rad: any shape, clockwise from the antenna's front; elevation_rad: up positive."""
+    def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: Elevation) -> NDArray[np.complex128]:
+        """azimuth_rad: any shape, clockwise from the antenna's front."""
         ...
 
 
@@ -54,12 +57,12 @@ class YagiOnAirframe:
         Scatterer(-1.3, -0.15, 0.11 * np.exp(1.4j)),
     )
 
-    def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: float) -> NDArray[np.complex128]:
+    def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: Elevation) -> NDArray[np.complex128]:
         """See AntennaField. Vertical elements: cos(elevation) besides the array factor."""
         azimuth = np.asarray(azimuth_rad, dtype=np.float64)
         return self._raw(azimuth, elevation_rad) / np.abs(self._raw(np.zeros(1), 0.0))[0]
 
-    def _raw(self, azimuth: NDArray[np.float64], elevation: float) -> NDArray[np.complex128]:
+    def _raw(self, azimuth: NDArray[np.float64], elevation: Elevation) -> NDArray[np.complex128]:
         forward, right = np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation)
         total = np.zeros(azimuth.shape, dtype=np.complex128)
         for place, current in zip(self.element_forward, self.element_current, strict=True):
@@ -76,7 +79,7 @@ class TabulatedAntenna:
     azimuth_deg: NDArray[np.float64]
     gain_db: NDArray[np.float64]
 
-    def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: float) -> NDArray[np.complex128]:
+    def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: Elevation) -> NDArray[np.complex128]:
         """See AntennaField; the table holds at every elevation."""
         wanted_deg: NDArray[np.float64] = np.rad2deg(azimuth_rad)
         relative_db: NDArray[np.float64] = self.gain_db - self.gain_db.max()

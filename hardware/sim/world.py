@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,12 +110,18 @@ class Pose:
     lean: Lean = UPRIGHT
 
 
-def as_leaning(east: float, north: float, up: float, lean: Lean) -> tuple[float, float, float]:
+Coordinate = TypeVar("Coordinate", float, NDArray[np.float64])
+
+
+def as_leaning(
+    east: Coordinate, north: Coordinate, up: Coordinate, lean: tuple[Coordinate, Coordinate]
+) -> tuple[Coordinate, Coordinate, Coordinate]:
     """A direction as a vehicle has it whose upright axis leans: what lies where it leans to stands higher for it."""
-    angle = math.hypot(*lean)
-    to_east, to_north = lean[0] / angle, lean[1] / angle
+    angle = np.hypot(*lean)
+    upright = angle == 0.0
+    to_east, to_north = lean[0] / (angle + upright) + upright, lean[1] / (angle + upright)
     along, across = east * to_east + north * to_north, north * to_east - east * to_north
-    along, up = along * math.cos(angle) - up * math.sin(angle), along * math.sin(angle) + up * math.cos(angle)
+    along, up = along * np.cos(angle) - up * np.sin(angle), along * np.sin(angle) + up * np.cos(angle)
     return along * to_east - across * to_north, along * to_north + across * to_east, up
 
 
@@ -241,6 +248,17 @@ class RadioLink:
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) readings in dBm and whether each clipped: mean of |signal + noise|^2 over `averages` draws, jittered."""
         return self.read_dbm(self.amplitudes(at_s, place, height_m, heading_deg, lean))
+
+    def powers_dbm_of(
+        self, at_s: NDArray[np.float64], received: NDArray[np.complex128]
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """The same of fields (n,) as they are received without fading, sqrt mW, each read by itself: what chance there
+        is comes in the order of `power_dbm`."""
+        readings = [
+            self.read_dbm(np.array([amplitude * self._fading.gain(float(t))]))
+            for t, amplitude in zip(at_s, received, strict=True)
+        ]
+        return np.array([power[0] for power, _ in readings]), np.array([clipped[0] for _, clipped in readings])
 
     def read_dbm(self, amplitude: NDArray[np.complex128]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) the same of (n,) amplitudes, which may be those of several emitters, added up."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.compiling import SOURCES, entry, jit
+from planner.compiling import entry, jit
 from planner.types import FloatArray, IntArray
 
 
@@ -30,7 +30,6 @@ def geometric_median(
 
 @entry
 def _median(mass, x, y, tried, tolerance, steps):
-    _ = SOURCES
     px = py = 0.0
     for i in range(len(mass)):
         px += mass[i] * x[i]

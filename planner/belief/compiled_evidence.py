@@ -382,41 +382,6 @@ def _whole(known, low, high, apart, table):
     return whole
 
 
-@entry
-def _tables(seen, profiles, bias, spacing, scale, rate, tabulated):
-    """reach, odds, table, shares and outliers as `Prepared` has them. tabulated: (t,) the bearing of each table."""
-    _ = SOURCES
-    scales, rates, count, bearings = len(scale), len(rate), len(bias), len(seen.x)
-    everywhere = int(np.ceil((np.pi + max(abs(bias[0]), abs(bias[count - 1]))) / spacing)) + 1 + count
-    reach, odds = np.empty((bearings, scales), dtype=np.int64), np.empty((bearings, scales, rates))
-    outliers, widest = 0.0, 0
-    for i in range(bearings):
-        uniform = seen.sigma[i] / np.sqrt(2.0 * np.pi)
-        outliers += np.log(rate.max() * uniform)
-        for k in range(scales):
-            reach[i, k] = everywhere
-            if seen.whole[i] < 0:
-                reach[i, k] = min(everywhere, int(np.ceil(FAR_SIGMAS * scale[k] * seen.sigma[i] / spacing)) + 1)
-            widest = max(widest, reach[i, k])
-            for e in range(rates):
-                odds[i, k, e] = (1.0 - rate[e]) / scale[k] / (rate[e] * uniform)
-    table = np.empty((len(tabulated), scales, STEPS + 2, 2 * widest + 2))
-    for t in range(len(tabulated)):
-        i = tabulated[t]
-        for k in range(scales):
-            of_scale = table[t, k, :, : 2 * reach[i, k] + 2]
-            if seen.whole[i] >= 0:
-                unit = scale[k] * seen.sigma[i] * np.sqrt(2.0 * np.pi)
-                _tabulate_profile(of_scale, spacing, profiles[seen.whole[i], k], seen.angle[seen.first[i]], unit)
-            else:
-                _tabulate(of_scale, spacing, scale[k] * seen.sigma[i])
-    shares = np.empty((2, rates))
-    for e in range(rates):
-        shares[0, e] = (rate[e] / rate.max()) ** RESCALED_EVERY
-        shares[1, e] = (rate[e] / rate.max()) ** (bearings % RESCALED_EVERY)
-    return reach, odds, table, shares, outliers
-
-
 @allocating
 def _scratch(known):
     """past, apart, table, density and sums as `_of_cell` takes them."""
@@ -431,83 +396,122 @@ def _scratch(known):
     )
 
 
-@entry
-def _log_evidence(x, y, known, found):
-    _ = SOURCES
-    past, apart, table, density, sums = _scratch(known)
-    for c in range(len(x)):
-        low, high = _reached(x[c], y[c], known, past)
-        log = _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
-        found[c] = log + np.log(_whole(known, low, high, apart, table))
+def _entry_points(sources: int):
+    """sources: what is compiled in, as a number. numba tells cached functions apart by what they close over."""
+
+    @entry
+    def tables_of(seen, profiles, bias, spacing, scale, rate, tabulated):
+        """reach, odds, table, shares and outliers as `Prepared` has them. tabulated: (t,) the bearing of each table."""
+        _ = sources
+        scales, rates, count, bearings = len(scale), len(rate), len(bias), len(seen.x)
+        everywhere = int(np.ceil((np.pi + max(abs(bias[0]), abs(bias[count - 1]))) / spacing)) + 1 + count
+        reach, odds = np.empty((bearings, scales), dtype=np.int64), np.empty((bearings, scales, rates))
+        outliers, widest = 0.0, 0
+        for i in range(bearings):
+            uniform = seen.sigma[i] / np.sqrt(2.0 * np.pi)
+            outliers += np.log(rate.max() * uniform)
+            for k in range(scales):
+                reach[i, k] = everywhere
+                if seen.whole[i] < 0:
+                    reach[i, k] = min(everywhere, int(np.ceil(FAR_SIGMAS * scale[k] * seen.sigma[i] / spacing)) + 1)
+                widest = max(widest, reach[i, k])
+                for e in range(rates):
+                    odds[i, k, e] = (1.0 - rate[e]) / scale[k] / (rate[e] * uniform)
+        table = np.empty((len(tabulated), scales, STEPS + 2, 2 * widest + 2))
+        for t in range(len(tabulated)):
+            i = tabulated[t]
+            for k in range(scales):
+                of_scale = table[t, k, :, : 2 * reach[i, k] + 2]
+                if seen.whole[i] >= 0:
+                    unit = scale[k] * seen.sigma[i] * np.sqrt(2.0 * np.pi)
+                    _tabulate_profile(of_scale, spacing, profiles[seen.whole[i], k], seen.angle[seen.first[i]], unit)
+                else:
+                    _tabulate(of_scale, spacing, scale[k] * seen.sigma[i])
+        shares = np.empty((2, rates))
+        for e in range(rates):
+            shares[0, e] = (rate[e] / rate.max()) ** RESCALED_EVERY
+            shares[1, e] = (rate[e] / rate.max()) ** (bearings % RESCALED_EVERY)
+        return reach, odds, table, shares, outliers
+
+    @entry
+    def log_evidence_of(x, y, known, found):
+        _ = sources
+        past, apart, table, density, sums = _scratch(known)
+        for c in range(len(x)):
+            low, high = _reached(x[c], y[c], known, past)
+            log = _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            found[c] = log + np.log(_whole(known, low, high, apart, table))
+
+    @entry
+    def shared_out_over(x, y, mass, known, found, mean):
+        """found (k e, b): the sum over the cells of the nodes' shares in their mass. mean: (c,) bias of each cell."""
+        _ = sources
+        past, apart, table, density, sums = _scratch(known)
+        alone = np.zeros(len(apart))
+        for c in range(len(x)):
+            low, high = _reached(x[c], y[c], known, past)
+            _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            whole, bias = _whole(known, low, high, apart, table), 0.0
+            for r in range(len(apart)):
+                reached = known.moment[r, high] - known.moment[r, low]
+                bias += apart[r] * (known.moment[r, known.moment.shape[1] - 1] - reached)
+                bias += _dot(table[r, low:high], known.bias[low:high])
+                alone[r] += mass[c] / whole * apart[r]
+                within = table[r, low:high]
+                _added_beside(found[r, low:high], within, known.prior[r, low:high], apart[r], mass[c] / whole)
+            mean[c] = bias / whole
+        for r in range(len(alone)):
+            for b in range(found.shape[1]):
+                found[r, b] += alone[r] * known.prior[r, b]
+
+    @entry
+    def evidence_of(x, y, known, out):
+        _ = sources
+        past, apart, table, density, sums = _scratch(known)
+        rates = len(known.rate)
+        for c in range(len(x)):
+            low, high = _reached(x[c], y[c], known, past)
+            log = _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            whole = _whole(known, low, high, apart, table)
+            out.log[c] = log + np.log(whole)
+            out.bias[c] = 0.0
+            out.scale[c] = 0.0
+            out.rate[c] = 0.0
+            for r in range(len(apart)):
+                reached = known.before[r, high] - known.before[r, low]
+                row = apart[r] * (known.before[r, known.before.shape[1] - 1] - reached) + _sum(table[r, low:high])
+                out.scale[c, r // rates] += row / whole
+                out.rate[c, r % rates] += row / whole
+                _added(out.bias[c, :], known.prior[r, :], 0.0, apart[r] / whole)
+                within = table[r, low:high]
+                _added_beside(out.bias[c, low:high], within, known.prior[r, low:high], apart[r], 1.0 / whole)
+
+    @entry
+    def node_evidence_of(x, y, before, known, found):
+        """found (k e, b): the sum over the cells, without a factor whose logarithm is returned. before: (c,) logarithm
+        of each cell's weight."""
+        _ = sources
+        past, apart, table, density, sums = _scratch(known)
+        alone = np.zeros(len(apart))
+        found[:] = 0.0
+        top = -np.inf
+        for c in range(len(x)):
+            low, high = _reached(x[c], y[c], known, past)
+            log = before[c] + _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            if log > top:
+                factor = np.exp(top - log)
+                alone *= factor
+                found *= factor
+                top = log
+            weight = np.exp(log - top)
+            for r in range(len(apart)):
+                alone[r] += weight * apart[r]
+                _added(found[r, low:high], table[r, low:high], apart[r], weight)
+        for r in range(len(alone)):
+            found[r] += alone[r]
+        return top
+
+    return tables_of, log_evidence_of, shared_out_over, evidence_of, node_evidence_of
 
 
-@entry
-def _shared_out_over(x, y, mass, known, found, mean):
-    """found (k e, b): the sum over the cells of the nodes' shares in their mass. mean: (c,) bias of each cell."""
-    _ = SOURCES
-    past, apart, table, density, sums = _scratch(known)
-    alone = np.zeros(len(apart))
-    for c in range(len(x)):
-        low, high = _reached(x[c], y[c], known, past)
-        _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
-        whole, bias = _whole(known, low, high, apart, table), 0.0
-        for r in range(len(apart)):
-            reached = known.moment[r, high] - known.moment[r, low]
-            bias += apart[r] * (known.moment[r, known.moment.shape[1] - 1] - reached)
-            bias += _dot(table[r, low:high], known.bias[low:high])
-            alone[r] += mass[c] / whole * apart[r]
-            within = table[r, low:high]
-            _added_beside(found[r, low:high], within, known.prior[r, low:high], apart[r], mass[c] / whole)
-        mean[c] = bias / whole
-    for r in range(len(alone)):
-        for b in range(found.shape[1]):
-            found[r, b] += alone[r] * known.prior[r, b]
-
-
-@entry
-def _evidence(x, y, known, out):
-    _ = SOURCES
-    past, apart, table, density, sums = _scratch(known)
-    rates = len(known.rate)
-    for c in range(len(x)):
-        low, high = _reached(x[c], y[c], known, past)
-        log = _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
-        whole = _whole(known, low, high, apart, table)
-        out.log[c] = log + np.log(whole)
-        out.bias[c] = 0.0
-        out.scale[c] = 0.0
-        out.rate[c] = 0.0
-        for r in range(len(apart)):
-            reached = known.before[r, high] - known.before[r, low]
-            row = apart[r] * (known.before[r, known.before.shape[1] - 1] - reached) + _sum(table[r, low:high])
-            out.scale[c, r // rates] += row / whole
-            out.rate[c, r % rates] += row / whole
-            _added(out.bias[c, :], known.prior[r, :], 0.0, apart[r] / whole)
-            within = table[r, low:high]
-            _added_beside(out.bias[c, low:high], within, known.prior[r, low:high], apart[r], 1.0 / whole)
-
-
-@entry
-def _node_evidence(x, y, before, known, found):
-    """found (k e, b): the sum over the cells, without a factor whose logarithm is returned. before: (c,) logarithm of
-    each cell's weight."""
-    _ = SOURCES
-    past, apart, table, density, sums = _scratch(known)
-    alone = np.zeros(len(apart))
-    found[:] = 0.0
-    top = -np.inf
-    for c in range(len(x)):
-        low, high = _reached(x[c], y[c], known, past)
-        log = before[c] + _of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
-        if log > top:
-            factor = np.exp(top - log)
-            alone *= factor
-            found *= factor
-            top = log
-        weight = np.exp(log - top)
-        for r in range(len(apart)):
-            alone[r] += weight * apart[r]
-            _added(found[r, low:high], table[r, low:high], apart[r], weight)
-    for r in range(len(alone)):
-        found[r] += alone[r]
-    return top
+_tables, _log_evidence, _shared_out_over, _evidence, _node_evidence = _entry_points(SOURCES)

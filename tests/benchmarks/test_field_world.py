@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,8 +19,15 @@ def row(*times: float) -> dict[int, FieldMission]:
     return {seed: replace(FLOWN, seed=seed, time_s=time_s) for seed, time_s in enumerate(times)}
 
 
+@pytest.fixture(autouse=True)
+def _recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "widening.json"
+    path.write_text(json.dumps({"figures": [{"name": f"A wedge: {field_world.WIDENING}{SETTING.name}", "value": 1.7}]}))
+    monkeypatch.setattr(field_world, "WIDENINGS", path)
+
+
 def test_rows_are_compared_mission_by_mission() -> None:
-    found = {"whole": row(300.0, 100.0), "sector": row(280.0, 70.0), "wedge_wide": row(310.0, 120.0)}
+    found = {"whole": row(300.0, 100.0), "sector": row(280.0, 70.0), "widened": row(310.0, 120.0)}
     longer, half = field_world.paired(found["sector"], found["whole"])
     assert longer == pytest.approx(-25.0)
     assert half == pytest.approx(1.96 * 5.0)
@@ -27,7 +35,7 @@ def test_rows_are_compared_mission_by_mission() -> None:
         "localized in 400 s, %"
     ] == pytest.approx(100.0)
     judged = [figure for figure in field_world.figures({SETTING: found}) if figure.wanted is not None]
-    assert [(figure.value, figure.met) for figure in judged] == [(25.0, True)]
+    assert [(figure.value, figure.met) for figure in judged] == [(40.0, True)], "ahead of the widened wedge"
 
 
 def test_what_was_kept_is_not_flown_again(tmp_path: Path) -> None:
@@ -48,3 +56,18 @@ def test_settings_are_each_antenna_with_each_compass() -> None:
     names = [one.name for one in field_world.settings_of("0,sd", "yagi,wide")]
     assert names == ["yagi, compass 0", "yagi, compass sd 4", "wide, compass 0", "wide, compass sd 4"]
     assert field_world.Setting(8.0, "wide").options("sector").compass_deg == 8.0
+
+
+def test_the_widened_wedge_is_the_wedge_with_the_factor_of_its_setting() -> None:
+    assert SETTING.options("widened") == SETTING.options("wedge*1.7") != SETTING.options("wedge")
+
+
+def test_a_setting_in_which_no_wedge_was_widened_goes_without(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = field_world.Setting(8.0, "wide")
+    for one, name in ((SETTING, "whole"), (SETTING, "widened"), (other, "whole")):
+        field_world._keep(tmp_path, one, name, FLOWN)
+    found = field_world.flown(["whole", "widened"], [SETTING, other], range(FLOWN.seed, FLOWN.seed + 1), tmp_path)
+    assert [list(rows) for rows in found.values()] == [["whole", "widened"], ["whole"]]
+    assert "widened is left out: no wedge as wide as true is recorded for wide, compass 8" in capsys.readouterr().err

@@ -5,7 +5,11 @@ import sys
 
 import pytest
 
-from planner.compiling import COMPILED_IN
+from planner.belief import compiled_evidence
+from planner.compiling import COMPILED_IN, SOURCES
+from planner.kernels.compiled.rollout import rollouts
+from planner.kernels.value.iteration import iterate
+from planner.kernels.value.transitions import transitions
 from planner.plan import warm_up
 from planner.sources import PLANNER
 
@@ -44,6 +48,17 @@ def test_machine_code_is_kept_for_the_same_sources_only(tmp_path, monkeypatch):
         assert successor(1) == 2
         hits.append(sum(successor.stats.cache_hits.values()))
     assert hits == [0, 1, 0]
+
+
+EVIDENCE = ("_tables", "_log_evidence", "_shared_out_over", "_evidence", "_node_evidence")
+
+
+@pytest.mark.parametrize(
+    "kernel", [rollouts, iterate, transitions, *(getattr(compiled_evidence, name) for name in EVIDENCE)]
+)
+def test_each_kept_kernel_closes_over_its_sources(kernel):
+    """numba looks at no other file than the kernel's own, and at no globals: it would run the code of before."""
+    assert [cell.cell_contents for cell in kernel.py_func.__closure__] == [SOURCES]
 
 
 def test_all_that_is_compiled_in_is_among_the_sources():

@@ -1,14 +1,26 @@
 """The field of the studies: paired by seed, shadowed as it says, and wrong in the ways that a field is."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from backend.simulation.field_world import LATE_S, SHADOW_DB, SHADOW_M, Shadow, Way, antenna_pattern, drawn_field
+from backend.simulation.field_world import (
+    FREQUENCY_HZ,
+    HEIGHT_M,
+    LATE_S,
+    SHADOW_DB,
+    SHADOW_M,
+    Shadow,
+    Way,
+    antenna_pattern,
+    drawn_field,
+)
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.frame import LocalFrame
 from hardware.readings import Place
+from hardware.sim.world import Pose, RadioLink
 
 FRAME = LocalFrame(Place(50.6234, 7.2046))
 AREA = (-156.5, 0.0, 156.5, 200.0)
@@ -62,6 +74,21 @@ def test_what_is_told_in_flight_is_late_and_what_is_heard_leans():
     assert [one.at_s for one in told] == pytest.approx([one.at_s + LATE_S for one in heard])
     other, _ = field.along(Way(steps, steps, 5.0 * steps, leaning), 10.0, 0)
     assert max(abs(a.power_db - b.power_db) for a, b in zip(heard, other, strict=True)) > 0.2
+
+
+def test_along_a_way_is_heard_what_a_receiver_hears_point_by_point():
+    """As `RadioLink` has it of one pose after the other, each in the world as it is shadowed there."""
+    field = drawn_field(3, FRAME, AREA, 4.0, compass_deg=8.0)
+    steps = np.arange(20.0)
+    lean = np.outer(np.where(steps < 5, 0.0, 0.2), [0.6, 0.8])
+    heard, _ = field.along(Way(10.0 * steps, 3.0 * steps, 7.0 * steps, lean), 10.0, 4)
+    seed = int(np.random.default_rng([field.seed, 4, 4]).integers(2**31))
+    link = RadioLink(replace(field.world, seed=seed), FREQUENCY_HZ)
+    for k, sample in enumerate(heard):
+        x, y = 10.0 * k, 3.0 * k
+        link.world = field._at(x, y)
+        pose = Pose(FRAME.to_geo(x, y), HEIGHT_M, 7.0 * k, (float(lean[k, 0]), float(lean[k, 1])))
+        assert link.power_dbm(k / 10.0, pose) == (pytest.approx(sample.power_db, abs=1e-9), sample.clipped)
 
 
 def test_shadows_have_their_spread_and_change_over_their_length():
