@@ -204,7 +204,7 @@ class Work:
                 wanted, platform, number, effect.avoid, threads, craft_id, list(ranks.values())
             )
         else:
-            emitter = sought[0]
+            emitter = next(iter(sought))
             task = self.task.together.about(search, emitter.emitter_id).without(closed)
             belief = task.planning_belief(task.planner_bearings(emitter.bearings))
             choice = next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)

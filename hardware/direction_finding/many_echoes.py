@@ -49,7 +49,7 @@ def echo_field(pattern: AntennaPattern) -> BentLobes:
     gain = np.maximum(10.0 ** ((pattern.gain_at(x) - float(pattern.gain_db.max())) / 10.0), _LEAST_GAIN)
     k = np.array(ECHO_POWERS)[:, None] * gain.mean() / gain
     return BentLobes(
-        _DB * (np.log(gain) + np.asarray(exp1(1.0 / k))),
+        _DB * (np.log(gain) + np.asarray(exp1(1.0 / k), dtype=np.float64)),
         _DB * np.sqrt(1.0 / (1.0 / (2.0 * k) + 6.0 / math.pi**2)),
         waves_of(np.abs(np.fft.rfft(np.sqrt(gain))) ** 2),
     )

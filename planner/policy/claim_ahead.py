@@ -179,7 +179,7 @@ def choice(ahead: ClaimAhead) -> Decision:
         QuickestPlace(float(times.mean()), gain, len(values)),
         candidates,
         times,
-        BEARINGS_DRAWN * len(values),
+        rollouts=BEARINGS_DRAWN * len(values),
     )
 
 

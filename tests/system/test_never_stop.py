@@ -12,6 +12,7 @@ from console import Console, console, simulated_vehicle
 from test_kill import seen_in, server_process
 
 from backend.cli.running import RunningServer
+from backend.simulation.emitters import Signal
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from hardware.sim.autopilot.launch import SimulatedAutopilot
@@ -61,7 +62,7 @@ async def test_a_mission_is_localized_without_a_turn_at_every_place(server: Runn
     assert ended["outcome"] == "localized", operator.story()
     last = operator.of("belief_updated")[-1]["event"]
     assert server.receiver is not None
-    truth = server.receiver.truth[868.3e6]
+    truth = server.receiver.truth[Signal(868.3e6)]
     error = math.hypot(*LocalFrame(truth).to_enu(Place(last["estimate"]["lat"], last["estimate"]["lon"])))
     assert error < 4 * last["estimate"]["expected_rmse_m"]
     passed = operator.of("place_passed")

@@ -119,7 +119,7 @@ def test_the_one_to_look_for_first_is_marked_and_each_says_when_it_was_found() -
     begun = MissionStarted(craft_id=FIRST_CRAFT, by="demo", home=home, home_amsl_m=100.0, software="test")
     flown = log(begun, belief(3.0, 10.0, "emitter-2"), ended("not_localized"), emitters=emitters)
     flown.recorded[2] = flown.recorded[2].model_copy(update={"at_utc": datetime(2026, 1, 1, 0, 2, tzinfo=UTC)})
-    graded = summary(flown, Settings(), {emitter.frequency_hz: TRUTH for emitter in emitters})["emitters"]
+    graded = summary(flown, Settings(), {Signal(emitter.frequency_hz): TRUTH for emitter in emitters})["emitters"]
     assert [(one["priority"], one["found_s"]) for one in graded] == [(None, None), (1, 120.0), (None, None)]
 
 

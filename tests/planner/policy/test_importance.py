@@ -45,7 +45,7 @@ def test_each_rank_weighs_less_than_the_one_before_whatever_its_numbers_and_shar
     assert weights[1] * LESS == pytest.approx(weights[0] + weights[2])
     assert weights[0] == weights[2]
     assert weights[3] == pytest.approx(weights[1] * LESS**2)
-    assert np.array_equal(weights, weights_of([20, 10, 20, 30]))
+    assert weights_of([20, 10, 20, 30]) == pytest.approx(weights, abs=0.0)
 
 
 def test_the_mean_time_is_the_plain_one_of_those_alike_and_near_that_of_the_first_otherwise():
