@@ -20,7 +20,7 @@ from backend.spec import SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.comparison import beam, known_right
 from hardware.direction_finding.estimate import SparseDirectionFinder
-from hardware.direction_finding.pattern_file import borrowed_pattern, save_pattern
+from hardware.direction_finding.pattern_file import borrowed_pattern, load_pattern, save_pattern
 from hardware.direction_finding.recordings import mounted
 from hardware.sdr.rotation import IqReading, read_sweeps
 from tests.benchmarks.pattern_mismatch import Mismatch, deformed, lumpy, sweep_of
@@ -53,6 +53,7 @@ def test_everybody_states_the_same_sigma(
     known = [] if pattern is BORROWED else ["--pattern", str(tmp_path / "antenna.json")]
     if known:
         save_pattern(pattern, tmp_path / "antenna.json")
+        pattern = load_pattern(tmp_path / "antenna.json")  # rounded
 
     told = json.loads(CliRunner().invoke(SWEEP, [str(file), *known, "--at", "50.6,7.2", "--json"]).stdout)
 

@@ -66,6 +66,7 @@ def test_two_places_are_too_few_to_repeat() -> None:
 )
 def test_the_refined_pattern_takes_most_of_the_error_away(heard: AntennaPattern) -> None:
     kept, before = flight(heard, 8, 2)
+    assert float(np.sqrt(np.mean(before**2))) > 4.0
     refined = refined_pattern(kept, EMITTER, NOMINAL)
     assert refined is not None
     rng = np.random.default_rng(9)
@@ -73,4 +74,4 @@ def test_the_refined_pattern_takes_most_of_the_error_away(heard: AntennaPattern)
     for truth in rng.uniform(0.0, 360.0, 10):
         reading = FINDER.estimate(sweep_of(Mismatch("", heard, refined), 90, math.inf, float(truth), rng), refined)
         after.append((reading.bearing_deg - truth + 180.0) % 360.0 - 180.0)
-    assert float(np.sqrt(np.mean(np.square(after)))) < 0.35 * float(np.sqrt(np.mean(before**2)))
+    assert float(np.sqrt(np.mean(np.square(after)))) < 1.9  # degrees
