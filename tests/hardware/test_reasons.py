@@ -24,5 +24,6 @@ def test_codes_are_unique() -> None:
 def test_each_value_of_a_list_has_its_unit() -> None:
     assert sentence_of(BandTooNarrow(250e3, 2.4e6, (868.3e6, 869.525e6))) == (
         "At a sample rate of 250.0 kHz the receiver cannot hear 868.3000 MHz, 869.5250 MHz at the same time as the "
-        "others. Raise the sample rate to 2.4000 MHz, or look for 868.3000 MHz, 869.5250 MHz in a search of its own."
+        "others. Raise the sample rate to 2.4000 MHz, or state in the mission how wide a band the receiver hears: then "
+        "it hears them one after another."
     )

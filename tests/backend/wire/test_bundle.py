@@ -8,15 +8,18 @@ import json
 import zipfile
 from xml.etree import ElementTree
 
-from backend.wire.bundle import FILES, RAW, bundle
+from backend.wire.bundle import FILES, RAW, WAYS, bundle
+
+NAMED = {*FILES, *RAW} - {WAYS}
+"""In a bundle of a mission without ways."""
 
 
 def test_every_file_is_in_it_and_named_in_the_readme(recorded, tracks) -> None:
     with zipfile.ZipFile(io.BytesIO(bundle(recorded, tracks))) as archive:
         assert archive.testzip() is None
-        assert set(archive.namelist()) == {"README.txt", *FILES, *RAW}
+        assert set(archive.namelist()) == {"README.txt", *NAMED}
         readme = archive.read("README.txt").decode()
-        assert all(name in readme for name in (*FILES, *RAW))
+        assert all(name in readme for name in NAMED)
         assert len(json.loads(archive.read("mission.json"))["events"]) == len(recorded)
         assert json.loads(archive.read("mission.geojson"))["type"] == "FeatureCollection"
         assert ElementTree.fromstring(archive.read("mission.kml")).tag.endswith("kml")

@@ -99,7 +99,7 @@ def test_agents_clock_is_corrected_and_its_channels_are_told() -> None:
     carrier = {"frequency_hz": 433e6, "pulses": None, "others": []}
     assert answers(session)[0]["channels"] == [carrier]
     server.tune([Channel(433e6), Channel(150e6, Pulses(0.02, 1.3, 0.05))])
-    tag = {"frequency_hz": 150e6, "pulses": {"width_s": 0.02, "period_s": 1.3, "jitter_s": 0.05}}
+    tag = {"frequency_hz": 150e6, "pulses": {"width_s": 0.02, "period_s": 1.3, "jitter_s": 0.05}, "others": []}
     assert answers(session) == [{"type": "tune", "channels": [carrier, tag]}]
     session.receive(batch(1, 1, offset=3.0))
     assert drained(subscription) == [4.0]
