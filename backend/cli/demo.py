@@ -124,7 +124,7 @@ def demo(
     ] = False,
     band: Annotated[
         float | None,
-        typer.Option(min=5.0, help="The simulated receiver hears so many kHz at once, and the mission says so."),
+        typer.Option(min=5.0, help="Band of the simulated receiver, kHz: what it hears at once; the mission says so."),
     ] = None,
     moves: Annotated[
         str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")

@@ -63,7 +63,7 @@ def picture(screen: Screen) -> np.ndarray:
 
 def at_rest(screen: Screen) -> np.ndarray:
     """As soon as two pictures after one another are the same: a busy machine goes on drawing for seconds."""
-    before, until = picture(screen), time.monotonic() + 60.0
+    before, until = picture(screen), time.monotonic() + 120.0
     while time.monotonic() < until:
         screen.page.wait_for_timeout(500)
         now = picture(screen)
@@ -73,7 +73,7 @@ def at_rest(screen: Screen) -> np.ndarray:
     raise AssertionError("the page does not come to rest")
 
 
-TRIES = 3
+TRIES = 8
 """A busy machine may go on drawing after a pause; what is animated moves each time."""
 
 
