@@ -99,7 +99,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     expect(late.page.get_by_role("alert")).to_contain_text("Name or password is wrong")
 
     link = invited(admin, "operator")
-    expect(admin.part("made-invitation").get_by_role("img").first).to_be_visible()
+    expect(admin.part("made-invitation").get_by_role("img")).to_be_visible()
     phone = opened(open_screen, shared, link.split("/", 3)[3], settings={"language": "de"}, **PHONE)
     expect(phone.part("join-role")).to_contain_text("Operator")
     assert serious(phone.page) == []

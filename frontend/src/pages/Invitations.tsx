@@ -46,6 +46,11 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
   }, []);
   const shown = useRef<HTMLDivElement>(null);
   useEffect(() => shown.current?.scrollIntoView({ block: "nearest" }), [made.length]);
+  /** Back to one: two links for the next person, one of them for nobody, would be easily overlooked. */
+  const done = () => {
+    setMade([]);
+    setCount(1);
+  };
   const takeBack = async (id: string) => {
     await access.takeBackInvitation(id);
     setMade((before) => before.filter((other) => other.invitation.invitation_id !== id));
@@ -88,7 +93,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
               <Made made={one} key={one.invitation.invitation_id} />
             ))}
           </div>
-          <button type="button" class="invitations-done" onClick={() => setMade([])}>
+          <button type="button" class="invitations-done" onClick={done}>
             {t("people.qr.done")}
           </button>
         </>
