@@ -122,7 +122,7 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
 
 /** Pixels that the map's controls and its scale cover along its edges; tools, and half a rose beside them, stand at the top left. */
 const COVERED = { top: 14, right: 62, bottom: 44, left: 14 };
-const TOOLS = { width: 230, height: 110 };
+const TOOLS = { width: 170, height: 110 };
 
 /** As large as it can be seen, below the tools or beside them. bannerPx: what an alert covers besides, at the top. */
 export function fit(map: GlMap, box: [number, number, number, number], animate: boolean, bannerPx = 0): void {
