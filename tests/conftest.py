@@ -180,7 +180,7 @@ class PostgresCluster:
         return self.url(name)
 
     def give_back(self, url: str) -> None:
-        """To be emptied and used again: one is 10 MB in 350 files, and to remove hundreds took half a minute."""
+        """To be emptied and used again: one is 10 MB in 350 files to write and to remove."""
         self._given_back.append(url.rsplit("/", 1)[1])
 
 
