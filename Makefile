@@ -102,7 +102,9 @@ kernel: setup-dev ## compiled once here, not by each test worker
 
 # By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
 # tests/conftest.py holds the marks to the folders, so that no run has to import the others' tests.
-UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not system and not browser and not long" \
+# tests/conftest.py also puts the files that take longest first; xdist's own order knows only how many tests they have.
+BY_FILE := -n 2 --dist loadfile --no-loadscope-reorder
+UNIT_TESTS := $(BIN)/pytest $(BY_FILE) --hypothesis-profile ci -m "not system and not browser and not long" \
   --ignore tests/browser --ignore tests/system
 
 unit: kernel ## tests without a vehicle or a browser
@@ -116,7 +118,7 @@ system: setup-dev build ## whole missions over real sockets
 	$(BIN)/pytest tests/system tests/fuzz -m system --durations 8
 
 stories: setup-dev build browser ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
-	$(BIN)/pytest tests/browser -n 2 --dist loadfile --durations 8
+	$(BIN)/pytest tests/browser $(BY_FILE) --durations 8
 
 long: setup-dev ## the kernel against its reference 10,000 times, and tables recomputed: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600

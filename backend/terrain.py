@@ -21,8 +21,8 @@ Heights = NDArray[np.float32]
 Numbers = NDArray[np.float64]
 
 BEYOND = 0.75
-"""A node speaks for half a cell around it: so much of a cell beyond the last one is still known, and files laid side by
-side leave no gap."""
+"""A node stands for half a cell around it. Up to this share of a cell beyond the last node the ground is known as well,
+so that files laid side by side leave no gap."""
 METRES_PER_DEGREE = 111_195.0
 MOST_NODES = 16 * 2**20
 

@@ -43,8 +43,11 @@ exact_entry = cast(Compiler, njit(cache=True, nogil=True))
 
 COMPILED_IN = (
     "kernels/**/*.py",
+    "belief/compiled_cell.py",
     "belief/compiled_evidence.py",
     "belief/compiled_on_the_way.py",
+    "belief/compiled_rows.py",
+    "belief/compiled_tables.py",
     "belief/estimate.py",
     "belief/grid.py",
     "compiling.py",

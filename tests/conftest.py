@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -33,10 +34,45 @@ sys.path.append(str(Path(__file__).parents[1]))  # for `from tests.reasons impor
 FOLDERS = {"browser": ("browser",), "system": ("system", "fuzz/test_http.py", "fuzz/test_live.py")}
 """Where `make stories` and `make system` look for their tests, and where `make unit` looks for none."""
 
+LONGEST = (
+    "browser/test_emitters.py",
+    "browser/test_motion.py",
+    "browser/test_fly.py",
+    "browser/test_screens.py",
+    "browser/test_thirty_days.py",
+    "browser/test_page.py",
+    "backend/craft/test_machine_sweep.py",
+    "strikes/test_strike.py",
+    "planner/kernels/test_compiled.py",
+    "backend/store/test_outage.py",
+    "backend/mission/test_learning.py",
+    "test_wheel.py",
+    "contracts/vehicle/test_link.py",
+    "benchmarks/test_battery_home.py",
+)
+"""Files of few tests that take long, the longest first. One that began last would keep one worker busy alone."""
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """A test that lies where no target of the Makefile looks for its mark would never run."""
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     here = Path(__file__).parent
+    _hold_marks_to_folders(here, items)
+    if hasattr(config, "workerinput"):
+        _put_long_files_first(here, items)
+
+
+def _put_long_files_first(here: Path, items: list[pytest.Item]) -> None:
+    """For `--dist loadfile --no-loadscope-reorder`, whose workers take the files in this order: after the longest ones
+    those with the most tests, as xdist would have them."""
+    ranks = {here / file: rank for rank, file in enumerate(LONGEST)}
+    if gone := [str(file) for file in ranks if not file.is_file()]:
+        raise pytest.UsageError(f"LONGEST of {__file__} names files that are no more: {gone}")
+    tests = Counter(item.path for item in items)
+    items.sort(key=lambda item: (ranks.get(item.path, len(ranks)), -tests[item.path], item.path))
+
+
+def _hold_marks_to_folders(here: Path, items: list[pytest.Item]) -> None:
+    """A test that lies where no target of the Makefile looks for its mark would never run."""
     for item in items:
         if item.get_closest_marker("long") is not None:  # `make long` looks everywhere
             continue
@@ -44,6 +80,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             lies_there = any(item.path.is_relative_to(here / folder) for folder in folders)
             if lies_there != (item.get_closest_marker(mark) is not None):
                 raise pytest.UsageError(f"{item.nodeid}: {mark!r} must mark the tests of {folders}, and no others")
+
+
+EMPTIED = """
+SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid();
+DROP SCHEMA public CASCADE;
+CREATE SCHEMA public;
+"""
+"""Migrations make nothing outside this schema; a connection that a test left open could hold a lock on it."""
 
 
 class PostgresCluster:
@@ -55,6 +99,7 @@ class PostgresCluster:
             free.bind(("127.0.0.1", 0))
             self.port = free.getsockname()[1]
         self.process: subprocess.Popen[bytes] | None = None
+        self._given_back: list[str] = []
 
     def _run(self, program: str, *arguments: str) -> subprocess.Popen[bytes]:
         command = [str(self.programs / program), "-D", str(self.folder / "data"), *arguments]
@@ -114,8 +159,8 @@ class PostgresCluster:
         for process in self._all():
             process.resume()
 
-    async def _ask(self, statement: str) -> None:
-        connection = await asyncpg.connect(self.url("postgres"), timeout=5)
+    async def _ask(self, statement: str, database: str = "postgres") -> None:
+        connection = await asyncpg.connect(self.url(database), timeout=5)
         try:
             await connection.execute(statement)
         finally:
@@ -125,9 +170,18 @@ class PostgresCluster:
         return f"postgresql://crossfix@127.0.0.1:{self.port}/{database}"
 
     def new_database(self) -> str:
-        name = f"test_{uuid4().hex[:12]}"
-        asyncio.run(self._ask(f"CREATE DATABASE {name}"))
+        """An empty one: made, or given back and emptied."""
+        if self._given_back:
+            name = self._given_back.pop()
+            asyncio.run(self._ask(EMPTIED, name))
+        else:
+            name = f"test_{uuid4().hex[:12]}"
+            asyncio.run(self._ask(f"CREATE DATABASE {name}"))
         return self.url(name)
+
+    def give_back(self, url: str) -> None:
+        """To be emptied and used again: one is 10 MB in 350 files to write and to remove."""
+        self._given_back.append(url.rsplit("/", 1)[1])
 
 
 def postgres_programs() -> Path | None:
@@ -164,10 +218,16 @@ def postgres_cluster() -> Iterator[PostgresCluster]:
 
 
 @pytest.fixture
-def postgresql_url(request: pytest.FixtureRequest) -> str:
-    """An empty PostgreSQL database: CROSSFIX_TEST_POSTGRESQL_URL, or a new one in the temporary cluster."""
+def postgresql_url(request: pytest.FixtureRequest) -> Iterator[str]:
+    """An empty PostgreSQL database: CROSSFIX_TEST_POSTGRESQL_URL, or one in the temporary cluster."""
     given = os.environ.get("CROSSFIX_TEST_POSTGRESQL_URL")
-    return given or request.getfixturevalue("postgres_cluster").new_database()
+    if given:
+        yield given
+        return
+    cluster: PostgresCluster = request.getfixturevalue("postgres_cluster")
+    url = cluster.new_database()
+    yield url
+    cluster.give_back(url)
 
 
 @dataclass

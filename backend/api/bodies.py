@@ -44,7 +44,7 @@ PIECE_BYTES = 2**15
 """Even: of a piece of backslashes alone none escapes what comes after it."""
 LET_PASS_BYTES = 64 * 2**20
 STALL_S = 20.0
-"""So long a body may stand still, at least."""
+"""A body may stand still for at least this long."""
 
 
 def most_bytes(path: str) -> int | None:

@@ -100,7 +100,7 @@ async def running_server(
 
 STOPPING = (signal.SIGINT, signal.SIGTERM)
 HOLD_PATIENCE_S = 5.0
-"""So long a vehicle may take to confirm its hold before the server ends without."""
+"""How long a vehicle may take to confirm its hold before the server ends without the confirmation."""
 
 
 def stop_on_signals(running: RunningServer, say: Callable[[str], None]) -> None:

@@ -21,7 +21,7 @@ AIRSPEED_M_S = 12.0
 """As fast through the air as a vehicle is taken to fly: against more wind it comes home slowly."""
 SLOWEST_M_S = 1.0
 LEG_S = 8.0
-"""Each leg takes so much longer than its length at full speed: it begins and ends standing, and settles."""
+"""Added to each leg's time at full speed, because it starts from a stop, ends in one, and settles."""
 SINK_M_S, LAND_M_S, LOW_M = 1.0, 0.5, 10.0
 """Sinking, and below LOW_M landing: the slower of what PX4 and ArduCopter do as they are shipped."""
 TOUCH_DOWN_S = 10.0

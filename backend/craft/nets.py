@@ -23,8 +23,8 @@ FARTHEST_M = 20.0
 CEILING_MARGIN_M = 3.0
 MOST_OUTLINE_CORNERS = 16
 ROUGHNESS_M = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""The outline may be so much rougher, always outwards, to have no more corners than that: each takes both ways of the
-link twice, and 28 took 45 s at 250 ms each way (PX4)."""
+"""By how much the outline may be simplified, always outwards, until it has no more corners than that: each corner takes
+two round trips over the link, and 28 took 45 s at 250 ms each way (PX4)."""
 
 
 def mission_nets(limits: Limits) -> MissionNets:

@@ -59,7 +59,7 @@ class ReconnectingVehicle:
             self._there.set()
 
     async def connect(self, timeout_s: float = 30.0) -> None:
-        """Wait at most so long for the first answer; goes on trying afterwards. Raises VehicleUnreachable."""
+        """Wait for the first answer, `timeout_s` at most; goes on trying afterwards. Raises VehicleUnreachable."""
         if self._connecting is None and self._vehicle is None:
             self._connecting = asyncio.create_task(self._keep_trying())
         try:

@@ -105,7 +105,7 @@ class Situation:
 
     @property
     def battery_unreported_s(self) -> float:
-        """So long the vehicle was heard without its battery's charge; the silence of a lost link is not counted."""
+        """How long the vehicle was heard without its battery's charge; the silence of a lost link is not counted."""
         heard, battery = self.telemetry.heard_at_s, self.telemetry.battery_at_s
         return 0.0 if heard is None or battery is None else heard - max(battery, self.heard_since_s)
 

@@ -36,8 +36,8 @@ from planner.types import PlannerError
 LEVEL_M = 1.0
 """A vehicle that is within this of an altitude is at it; well within what a level way is given."""
 CLIMB_FIRST_M = 3.0
-"""Over ground that nobody knows. A vehicle that is so much lower than it is to fly, after a pilot or a landing, goes up
-on the spot and not aslant."""
+"""Over unknown ground, a vehicle that is this far below its flight altitude (after a pilot or a landing) first climbs
+straight up."""
 
 PLACES_TRIED = 5
 """The planner knows only roughly where the ground leaves no room: what is not allowed after all is chosen again."""

@@ -19,7 +19,7 @@ from backend.reasons.maps import NoRoomForMap, UploadIncomplete
 BLOCK_BYTES = 2**20
 ID_DIGITS = 16
 ABANDONED_S = 6 * 3600.0
-"""A part file not written to for so long is the rest of an upload that died with its server."""
+"""A part file that was not written to for this long was left by an upload that died with its server."""
 
 
 class Upload:

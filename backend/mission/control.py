@@ -35,7 +35,7 @@ from backend.reasons.access import (
 )
 
 UNANSWERED_S = 30.0
-"""So long the holder has to answer, on the mission's clock."""
+"""How long the holder has to answer, on the mission's clock."""
 
 ControlFact = ControlChanged | ControlAsked | ControlKept
 

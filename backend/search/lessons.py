@@ -16,7 +16,8 @@ import numpy as np
 from backend.events import AntennaChecked, BearingMeasured, CraftSource, TruthNoted
 from backend.ports import Lesson, Said
 from backend.search.emitter import EmitterState
-from backend.search.localization import Localization, source_name
+from backend.search.localization import Localization
+from backend.search.planner_bearings import source_name
 from backend.search.source_priors import learned_errors, unknown_errors
 from backend.search.state import SearchState
 from backend.search.task import SearchTask

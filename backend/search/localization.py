@@ -1,84 +1,46 @@
-"""From a search's specification and facts about one emitter to the planner's words, and back.
+"""From facts about one emitter to the planner's words, and back.
 
 The belief is the fold of the counted bearings in the order they were taken, so a stored mission rebuilds it bit by bit.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from threading import RLock
 
 import numpy as np
-from shapely import Point, unary_union
-from shapely import Polygon as ShapelyPolygon
 from shapely.geometry.base import BaseGeometry
 
-from backend import spec
-from backend.events import (
-    BearingMeasured,
-    BearingSource,
-    BeliefUpdated,
-    CraftSource,
-    EstimateFact,
-    HeardOnTheWay,
-    ImportSource,
-    LegSaid,
-    PersonSource,
-    SourceErrorsFact,
-    SweepRejected,
-)
+from backend.events import BearingMeasured, BeliefUpdated, HeardOnTheWay, LegSaid, SweepRejected
 from backend.reasons import Reason, carried
 from backend.reasons.search import HeadingsAskew
 from backend.search import area
-from backend.search.area import EDGE_TOLERANCE_M
+from backend.search.belief_facts import errors_facts, estimate_fact
 from backend.search.errors import MissionInputError
-from backend.search.given import motion_of, prior_of
-from backend.search.never_stop import legs_of
-from backend.search.silences import EAST_DEG, silences_of
-from backend.search.source_priors import priors_of
-from backend.search.turn_schedule import turn_s
+from backend.search.planner_bearings import own_sigma_deg, planner_bearing, source_name
+from backend.search.problem import prior_belief_of, problem_of, rule_of
+from backend.search.silences import silences_of
 from backend.search.way_facts import stretches_of
 from backend.spec import MissionSpec
-from hardware.direction_finding.circle import LikelihoodError, SweepLikelihood
 from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
-from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
+from hardware.frame import LocalFrame
 from hardware.readings import Place
-from planner.belief.estimate import confidence_region
-from planner.belief.grid import GridBelief, digest, prior_belief, update
-from planner.belief.joint import JointBelief, heard_on_the_way, joint_prior, update_joint
+from planner.belief.grid import GridBelief, digest, update
+from planner.belief.joint import JointBelief, heard_on_the_way, update_joint
 from planner.belief.joint import unheard as silent_prior
-from planner.belief.moving import Assumed, MovingBelief, moving_prior, predicted, update_moving
+from planner.belief.moving import MovingBelief, predicted, update_moving
 from planner.belief.verdict import verdict
 from planner.detection import Silence
-from planner.movement import DRIFTING_S, PURPOSEFUL_S, WALKING_S, Movement
 from planner.on_the_way import Stretch
-from planner.types import (
-    Bearing,
-    Estimate,
-    InconsistentBearings,
-    LocalizationRule,
-    Peak,
-    PlannerError,
-    Problem,
-    Ring,
-    SectorTurns,
-)
+from planner.types import Bearing, InconsistentBearings, LocalizationRule, PlannerError, Problem
 
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
 
 FOLDS_KEPT = 64
 """Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
-
-
-PERSISTENCE_S = {"animal": WALKING_S, "walking": PURPOSEFUL_S, "drifting": DRIFTING_S}
-"""By the kind of movement."""
-
-KEEP_OFF_M = 1.1 * EDGE_TOLERANCE_M
-"""The planner's places and ways stay so far off no-fly zones: a little more than safety asks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,11 +85,6 @@ class Localization:
         """Whether the emitter may be elsewhere by the next bearing."""
         return isinstance(self.prior, MovingBelief)
 
-    @property
-    def _takes_whole_sweeps(self) -> bool:
-        """An emitter that moves is followed by peaks and sigmas: its Kalman filters know no other densities."""
-        return isinstance(self.prior, JointBelief) and self.mission.sensor.sweep_evidence == "whole"
-
     def after(self, unheard: Sequence[SweepRejected], legs: Sequence[HeardOnTheWay] = ()) -> Localization:
         """The same after turns that heard nothing of the emitter, known before any bearing, and legs on which it was
         heard, weighed after all of them."""
@@ -155,21 +112,11 @@ class Localization:
 
     def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
         """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""
-        return tuple(self._bearing(fact) for fact in measured)
-
-    def _bearing(self, fact: BearingMeasured) -> Bearing:
-        east, north = self.frame.to_enu(fact.place)
-        return Bearing(
-            x=east,
-            y=north,
-            angle=compass_to_angle(fact.bearing_deg),
-            sigma=math.radians(own_sigma_deg(fact) if self.joint else fact.sigma_deg),
-            outlier_probability=self.mission.sensor.outlier_probability,
-            peaks=tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in fact.peaks),
-            source=source_name(fact.source),
-            taken_at=(fact.taken_at_s or 0.0) if self.moving else 0.0,
-            profile=_profile(fact) if self._takes_whole_sweeps else (),
-        )
+        outliers = self.mission.sensor.outlier_probability
+        # an emitter that moves is followed by peaks and sigmas: its Kalman filters know no other densities
+        whole = isinstance(self.prior, JointBelief) and self.mission.sensor.sweep_evidence == "whole"
+        joint, moving = self.joint, self.moving
+        return tuple(planner_bearing(fact, self.frame, outliers, joint, moving, whole) for fact in measured)
 
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
         """None when the bearings have no common point and none may be an outlier."""
@@ -242,14 +189,16 @@ class Localization:
         fact = BeliefUpdated(
             emitter_id=self.emitter_id,
             bearings=len(bearings),
-            estimate=None if folded is None or said.estimate is None else self._estimate_fact(folded, said.estimate),
+            estimate=None
+            if folded is None or said.estimate is None
+            else estimate_fact(folded, said.estimate, self.frame),
             consistent=said.consistent,
             localized=said.localized and doubt is None,
             not_yet=not_yet,
             contradicting=[measured[index].bearing_id for index in said.against],
             heading_offset_deg=None if doubt is None else doubt.offset_deg,
             heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,
-            sources=_errors_facts(shown, measured),
+            sources=errors_facts(shown, measured),
             digest=digest(shown),
             legs=[LegSaid(leg_id=leg, said=round(said, 3)) for leg, said in said.ways],
         )
@@ -261,27 +210,6 @@ class Localization:
         bearing = np.array([b.bearing_deg for b in measured])
         own = np.array([own_sigma_deg(b) for b in measured])
         return heading_offset(places, bearing, own, max(self.mission.sensor.outlier_probability, DOUBT))
-
-    def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:
-        place = self.frame.to_geo(spread.x, spread.y)
-        region = confidence_region(belief)
-        variances, directions = np.linalg.eigh(spread.covariance)
-        minor, major = np.sqrt(np.maximum(variances, 0.0))
-        axis = math.atan2(directions[1, 1], directions[0, 1])
-        return EstimateFact(
-            lat=place.lat,
-            lon=place.lon,
-            expected_rmse_m=spread.expected_rmse,
-            c95=self.polygon(region),
-            c95_area_m2=ShapelyPolygon(region).area,
-            major_axis_m=float(major),
-            minor_axis_m=float(minor),
-            major_axis_deg=angle_to_compass(axis) % 180.0,
-        )
-
-    def polygon(self, ring: Ring) -> spec.Polygon:
-        """Ring in ENU to GeoJSON, closed."""
-        return spec.Polygon(coordinates=[self.frame.to_lon_lat(np.vstack([ring, ring[:1]]))])
 
     def corners_lon_lat(self, belief: GridBelief) -> list[tuple[float, float]]:
         """SW, SE, NE, NW of the grid's outer edge."""
@@ -302,110 +230,11 @@ def localization(
     Raises MissionInputError when the specification makes no sense there.
     """
     frame = LocalFrame(home)
-    target = area.target_area(mission, frame)
-    area.check_reach(target)
-    fence, zones = area.fence(mission, target, frame), area.no_fly(mission, frame)
     emitter = mission.emitters[0] if emitter_id is None else mission.emitter(emitter_id)
-    planner, sensor, wanted = mission.planner, mission.sensor, mission.localization
-    problem = Problem(
-        area=area.region(target),
-        sigma=math.radians(sensor.sigma_deg),
-        threshold=wanted.expected_rmse_m,
-        measurement_time=turn_s(mission),
-        motion=motion_of(planner.motion),
-        flight_area=area.region(fence),
-        no_fly=area.region(unary_union([*zones, closed or Point()]).buffer(KEEP_OFF_M, join_style="mitre")),
-        standoff=planner.standoff_m,
-        action_spacing=planner.action_spacing_m,
-        estimator=planner.estimator,
-        prior=prior_of(emitter.prior, frame),
-        sector_turns=_sector_turns(mission),
-        legs=legs_of(mission),
-    )
-    if (walk := _walk(emitter.movement)) is not None:
-        problem = replace(problem, threshold=walk.goal(wanted.expected_rmse_m, problem.measurement_time))
-    rule = LocalizationRule(
-        threshold=problem.threshold,
-        min_places=wanted.minimum_places,
-        min_place_distance=wanted.minimum_place_distance_m,
-        min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
-        ways=sensor.never_stop,
-    )
+    problem = problem_of(mission, emitter, frame, closed)
     try:
-        prior = _prior_belief(problem, sensor, emitter.movement)
+        prior = prior_belief_of(problem, mission.sensor, emitter.movement)
     except PlannerError as error:
         index = mission.emitters.index(emitter)
         raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
-    return Localization(mission, emitter.emitter_id, frame, problem, prior, rule)
-
-
-def _sector_turns(mission: MissionSpec) -> SectorTurns | None:
-    """None: every turn is a whole one, as it always is for several emitters and for tags."""
-    (emitter, *others) = mission.emitters
-    if others or emitter.kind == "pulsed" or not mission.sensor.sector_turns:
-        return None
-    return SectorTurns(math.radians(mission.sensor.turn_rate_deg_s))
-
-
-def own_sigma_deg(fact: BearingMeasured) -> float:
-    """Of what differs from bearing to bearing: the shares of heading and pattern are the same for all of a source."""
-    return math.sqrt(max(fact.sigma_deg**2 - fact.heading_sigma_deg**2 - fact.pattern_sigma_deg**2, 0.0))
-
-
-def _profile(fact: BearingMeasured) -> tuple[float, ...]:
-    """Natural log at the angles 0, 1, .. 359 degrees ccw from east; empty for a bearing whose sweep was not kept.
-
-    A likelihood that cannot be unpacked is none: the bearing counts by its peak and sigma.
-    """
-    if fact.likelihood is None:
-        return ()
-    try:
-        said = SweepLikelihood.unpacked(fact.likelihood).log_likelihood
-    except LikelihoodError:
-        return ()
-    return tuple(said[(EAST_DEG - np.arange(len(said))) % len(said)].tolist())
-
-
-def source_name(source: BearingSource) -> str:
-    """As the planner tells sources apart."""
-    match source:
-        case CraftSource(craft_id=name) | PersonSource(name=name) | ImportSource(recording_id=name):
-            return f"{source.kind}:{name}"
-
-
-def _prior_belief(problem: Problem, sensor: spec.SensorSpec, movement: spec.MovementSpec) -> GridBelief:
-    walk = _walk(movement)
-    if walk is not None:
-        known, otherwise = priors_of(sensor) if sensor.bearing_errors == "joint" else ({}, None)
-        return moving_prior(problem, Assumed(walk, known, otherwise))
-    match sensor.bearing_errors:
-        case "joint":
-            known, otherwise = priors_of(sensor)
-            return joint_prior(problem, known, otherwise)
-        case "independent":
-            return prior_belief(problem)
-
-
-def _walk(movement: spec.MovementSpec) -> Movement | None:
-    """None for one that stands still."""
-    if movement.kind == "still":
-        return None
-    return Movement(movement.speed_m_s, PERSISTENCE_S[movement.kind])
-
-
-def _errors_facts(belief: GridBelief, measured: Sequence[BearingMeasured]) -> list[SourceErrorsFact]:
-    """Compass bearings turn the other way round than the planner's angles."""
-    if not isinstance(belief, JointBelief | MovingBelief):
-        return []
-    sources = {source_name(fact.source): fact.source for fact in measured}
-    return [
-        SourceErrorsFact(
-            source=sources[one.source],
-            bearings=one.bearings,
-            bias_deg=-math.degrees(one.bias),
-            bias_std_error_deg=math.degrees(one.bias_sd),
-            sigma_scale=one.scale,
-            outlier_rate=one.outlier_rate,
-        )
-        for one in belief.errors
-    ]
+    return Localization(mission, emitter.emitter_id, frame, problem, prior, rule_of(mission, problem))

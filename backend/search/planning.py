@@ -15,7 +15,8 @@ import numpy as np
 
 from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, CraftSource, ForecastFact, PlanChosen
 from backend.reasons import Reason, carried
-from backend.search.localization import Localization, own_sigma_deg, source_name
+from backend.search.localization import Localization
+from backend.search.planner_bearings import own_sigma_deg, source_name
 from backend.spec import MissionSpec
 from hardware.readings import Place
 from planner.belief.grid import GridBelief

@@ -84,7 +84,7 @@ class TurnPlan:
 
 @dataclass(frozen=True, slots=True)
 class GoOn:
-    """Turn on clockwise by so much, and look again."""
+    """Turn on clockwise by `by_deg` degrees, and look again."""
 
     by_deg: float
     why: GoOnReason

@@ -1,4 +1,4 @@
-"""What a search asks of whoever flies or walks for it: where, and one localization an emitter, in one local frame."""
+"""What a search asks of those who fly or walk for it: places, and one localization per emitter, in one local frame."""
 
 from __future__ import annotations
 

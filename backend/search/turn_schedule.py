@@ -21,20 +21,20 @@ from hardware.sdr.tuning import Reach, width_hz
 
 SLICES = 16
 SPARE = 1.1
-"""The turn is so much slower than the pulses just need: they do not come in step with the headings."""
+"""The turn is this much slower than the pulses need at least, because they do not come in step with the headings."""
 SLOWEST_DEG_S = 2.0
 MOST_TURNS = 3
-"""Of one group, however seldom its pulses come."""
+"""Of one group, however rarely its pulses come."""
 CHANGE_S = 1.0
 """From the last of one group to the first sample of the next: opening, tuning and settling."""
 FAR_OFF = 2.0
-"""A specified time is taken for what it is unless the turn takes so many times as long."""
+"""The specified turn time is trusted unless the turn needs this many times as long."""
 
 
 @dataclass(frozen=True, slots=True)
 class Round:
     """All the way round for one group. emitters: those that are heard, wanted or not, in the specification's order.
-    times: so often, where pulses come too seldom for the slowest turn."""
+    times: how often it turns, more than once where pulses come too rarely for the slowest turn."""
 
     emitters: tuple[EmitterSpec, ...]
     rate_deg_s: float

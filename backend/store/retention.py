@@ -26,7 +26,7 @@ from backend.store.tables import events, missions, paths, sweeps, tracks
 log = logging.getLogger("crossfix.store")
 
 DELETED_DAYS = 30.0
-"""So long a deleted mission can be restored."""
+"""For this many days a deleted mission can be restored."""
 AT_ONCE = 50
 """Sweeps in one transaction: a flight that writes meanwhile waits for no more than that."""
 PAUSE_S = 0.05

@@ -13,7 +13,7 @@ from collections import deque
 from dataclasses import dataclass
 
 RATE_LIMIT = 0.05
-"""The autopilot's clock may be so much slower or faster than ours; more is not followed, but said."""
+"""The autopilot's clock may be slower or faster than ours by this share; more is reported, not followed."""
 WINDOW_S, BUCKET_S, RATE_FROM_S = 30.0, 1.0, 5.0
 """Of boot time: how much the line is drawn under, in parts of which the lowest point counts; from when it slopes."""
 JUDGED_FROM_S, AGREES_AGAIN = 15.0, 0.8
@@ -21,7 +21,7 @@ JUDGED_FROM_S, AGREES_AGAIN = 15.0, 0.8
 ODD_LOOKS = 10
 LONGEST_ROUND_TRIP_S = 3.0
 AGEING = 0.01
-"""s/s: so much uncertainty an exchange gains with time, beside half of its round trip."""
+"""s/s: the uncertainty that an exchange gains as it ages, in addition to half of its round trip."""
 _STEP_S, _STEP_COUNT = 1.0, 30
 """An offset larger than this over many messages is a step (the autopilot was suspended), not delay."""
 

@@ -16,7 +16,7 @@ from hardware.reasons.vehicle import AutopilotRefused, DoesNotHold, HoldIgnored
 from hardware.reasons.vehicle_news import StillMoving, TriedAgain
 
 BRAKES_S, BRAKES_WALL_S = 3.0, 1.5
-"""So long after a hold was ordered the vehicle is in a hold mode, and slower."""
+"""This long after a hold was ordered, the vehicle must be in a hold mode and slower."""
 SLOWER, NEVER_FAST_M_S = 0.6, 2.0
 """Slower: than this share of the highest speed seen since; what never was faster than NEVER_FAST_M_S need not be."""
 STAYS_M_S = 0.5

@@ -18,7 +18,7 @@ LEAST_US, MOST_US = 800, 2200
 SETTLED_S = 0.3
 """An autopilot waits for 0.2 s before it believes a switch; its own word of the mode comes first where there is one."""
 GIVEN_BACK_S = 1.0
-"""So long after an operator took the vehicle the pilot's way back to the autopilot's mode may still be reported."""
+"""For this long after an operator took the vehicle the pilot's return to the autopilot's mode may still be told."""
 
 
 class ModeSwitch:

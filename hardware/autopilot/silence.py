@@ -36,7 +36,7 @@ class AfterSilence:
     """For some time after a silence the vehicle may still act on it: by the clock and by the wall, each at least.
 
     Time in which this program stood still does not count (a busy machine loads a server for a minute): the mode of a
-    failsafe that waited so long to be read is not a pilot's.
+    failsafe that waited that long to be read is not a pilot's.
     """
 
     def __init__(self, clock: Clock) -> None:

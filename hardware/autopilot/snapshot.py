@@ -20,7 +20,7 @@ Fields = dict[str, Any]
 HISTORY_S = 300.0
 JUMP_M, JUMP_M_S = 5.0, 10.0
 ARMING_S = 1.5
-"""A heartbeat heard so long after the autopilot agreed to arm says what came of it."""
+"""A heartbeat heard this long after the autopilot agreed to arm shows whether it did."""
 _ARMED = 128  # MAV_MODE_FLAG_SAFETY_ARMED
 _PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
 _FIXES: tuple[GpsFixName, ...] = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")

@@ -24,7 +24,7 @@ _NUDGE_DEG = 9e-6  # one metre of latitude
 
 
 async def turn_around(guidance: Guidance, rate_deg_s: float, by_deg: float = FULL_CIRCLE) -> None:
-    """Returns once telemetry saw it turn by so much, negative: counterclockwise. Raises VehicleError when no way of
+    """Returns once telemetry saw it turn by `by_deg`, negative: counterclockwise. Raises VehicleError when no way of
     turning made it."""
     here = guidance.here()
     spot = here if guidance.spot is None or sum(guidance.distance(*guidance.spot)) > SPOT_M else guidance.spot

@@ -156,7 +156,7 @@ def _poses(
 
 
 def _held_up(track: Sequence[HeadingSample]) -> NDArray[np.bool_]:
-    """Where the reported place stayed the same to the last digit for so long that it was no longer told."""
+    """True where the reported place stayed the same to the last digit for too long to be a live report."""
     found, begin = np.zeros(len(track), dtype=bool), 0
     for k in range(1, len(track) + 1):
         if k == len(track) or track[k].position != track[begin].position:

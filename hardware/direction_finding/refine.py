@@ -42,7 +42,7 @@ CORRELATION_DEG = 40.0
 SIGMA_FLOOR_DEG = 0.25
 """Half a column."""
 NEGLIGIBLE = 9.0
-"""Alternatives so much (natural log) below the best are left out."""
+"""Alternatives that are worse than the best by more than this (natural log) are left out."""
 FEWEST_FREE = 3.0
 FIRST_CORRELATION = 4.0
 """r assumed while the residuals are not known yet."""

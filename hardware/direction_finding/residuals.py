@@ -39,7 +39,7 @@ LEAST_UNEVEN_DB = 0.2
 """Flanks of 0.9 and 1.1 make as much; they move a bearing by 4 degrees."""
 SHUFFLES = 400
 RARELY = 0.01
-"""Chance that sweeps which have nothing in common repeat so much."""
+"""Chance that sweeps which have nothing in common repeat this much."""
 NEAREST_M = 30.0
 PRIOR_WEIGHT = 1.0
 """The measured pattern counts as much as this number of sweeps where the flight has few."""

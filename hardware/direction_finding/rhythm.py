@@ -73,7 +73,7 @@ class RhythmSorter:
         self._beam = _Beam.begun(self._assumed)
 
     def take(self, at_s: float) -> None:
-        """The next pulse; one from before the last (the clock was set) begins anew."""
+        """Take the next pulse. One that is earlier than the last (the clock was set) starts everything over."""
         if self.at_s and at_s < self.at_s[-1]:
             self.at_s, self._steps, self._beam = [], [], _Beam.begun(self._assumed)
         self.at_s.append(at_s)

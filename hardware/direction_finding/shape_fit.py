@@ -34,7 +34,7 @@ class Templates:
             self.db, self.share = _DB * np.log(total), power / total
 
     def smoothed(self, bins: int) -> Templates:
-        """As means over so many bins show them."""
+        """The same templates averaged over `bins` neighbouring bins."""
         means = copy(self)
         means.db = box(self.db, bins)
         means.share = None if self.share is None else box(self.share, bins)

@@ -20,8 +20,8 @@ from hardware.sdr.tuning import Reach, centre_hz
 class IqReceiver:
     """Measures the power of carriers and of tags' pulses in one IQ stream, all those inside its band at once.
 
-    `silent_after_s`: samples() raises ReceiverError when the source delivers nothing for so long, or loses more than
-    half of what so long a time holds.
+    `silent_after_s`: samples() raises ReceiverError when the source delivers nothing for this long, or loses more than
+    half of the samples of such a period.
     """
 
     def __init__(self, source: IqSource, silent_after_s: float = 5.0) -> None:

@@ -28,7 +28,7 @@ _RATES_HZ = ((225_001, 300_000), (900_001, 3_200_000))
 class RtlTcpSource:
     """IQ from an rtl_tcp server. Manual gain; the chip's own AGC is switched off.
 
-    settle_s: twice so much is dropped from the front. The server streams before it is tuned; then it sends bursts of
+    settle_s: twice this is dropped from the front. The server streams before it is tuned; then it sends bursts of
     131072 samples, and only the end of a burst tells how old its samples are.
     """
 

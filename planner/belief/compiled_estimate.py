@@ -21,8 +21,8 @@ def _mean_distance(mass, x, y, px, py):
 def geometric_median(
     mass: FloatArray, x: FloatArray, y: FloatArray, tried: IntArray, tolerance: float, steps: int
 ) -> tuple[float, float]:
-    """As `estimate.geometric_median` finds it among points (n,) of mass 1, in so many steps at most. tried: (k,) which
-    points to try besides; of equally good ones the first."""
+    """The same as `estimate.geometric_median`, for points (n,) whose masses add up to 1, in at most `steps` steps.
+    tried: (k,) indices of points to compare the result with; the first of equally good ones is taken."""
     mass, x, y = (np.ascontiguousarray(one, dtype=float) for one in (mass, x, y))
     px, py = _median(mass, x, y, tried, tolerance, steps)
     return float(px), float(py)

@@ -22,7 +22,7 @@ from backend.craft.endurance import landing_s
 from backend.craft.watch.consumption import Consumption
 from backend.craft.way_home import ABOVE_HOME_M, legs_home, way_home
 from backend.search.area import region
-from backend.search.localization import KEEP_OFF_M
+from backend.search.problem import KEEP_OFF_M
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
 from hardware.sim.autopilot.copter import Airframe, Copter, Wind

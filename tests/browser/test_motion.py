@@ -42,7 +42,7 @@ SHOWN = {
 """Screens on which nothing moves while nobody touches them: none of them shows a vehicle in flight."""
 
 CLOCKS = "[data-testid=indicators], .state-more { visibility: hidden }"
-"""What the vehicle tells, the age of that and the time: they are written anew, and that is all."""
+"""What the vehicle tells, the age of that and the time: they change, and nothing else does."""
 
 
 class Heard:

@@ -37,7 +37,7 @@ def show_deleted(screen: Screen) -> None:
 
 
 def aged(server: Server, days: dict[str, float]) -> None:
-    """While the server is away: as if they had been deleted so many days ago."""
+    """While the server is away: as if they had been deleted that many days ago."""
     with sqlite3.connect(server.data_dir / "crossfix.sqlite") as database:
         for mission_id, ago in days.items():
             at_us = round((datetime.now(UTC) - timedelta(days=ago)).timestamp() * 1e6)

@@ -8,7 +8,7 @@ from backend.craft.endurance import Endurance
 
 
 def still_air(percent_s: float) -> Endurance:
-    """One hypothesis: no wind, and so much of the battery a second however fast the vehicle flies."""
+    """One hypothesis: no wind, and `percent_s` of the battery a second however fast the vehicle flies."""
     nothing, one = np.zeros(1), np.ones(1)
     return Endurance(nothing, nothing, one, np.array([[percent_s, 0.0]]), np.zeros((1, 2, 2)))
 

@@ -8,7 +8,7 @@ import numpy as np
 from shapely import Polygon, unary_union
 
 from backend.search.area import region
-from backend.search.localization import KEEP_OFF_M
+from backend.search.problem import KEEP_OFF_M
 from planner.types import LinearMotion, Problem
 
 

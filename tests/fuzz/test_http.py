@@ -79,7 +79,7 @@ DEAR_ANYWAY = ("action_spacing_m", "fence_margin_m")
 
 
 def spare(content: Any) -> None:
-    """Makes the dear numbers of a body small, wherever in it they are."""
+    """Makes the costly numbers of a body small, at any depth."""
     if isinstance(content, list):
         for each in content:
             spare(each)

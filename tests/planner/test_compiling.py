@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from planner.belief import compiled_evidence
+from planner.belief import compiled_evidence, compiled_tables
 from planner.compiling import COMPILED_IN, SOURCES
 from planner.kernels.compiled.rollout import rollouts
 from planner.kernels.value.iteration import iterate
@@ -50,11 +50,18 @@ def test_machine_code_is_kept_for_the_same_sources_only(tmp_path, monkeypatch):
     assert hits == [0, 1, 0]
 
 
-EVIDENCE = ("_tables", "_log_evidence", "_shared_out_over", "_evidence", "_node_evidence")
+EVIDENCE = ("_log_evidence", "_shared_out_over", "_evidence", "_node_evidence")
 
 
 @pytest.mark.parametrize(
-    "kernel", [rollouts, iterate, transitions, *(getattr(compiled_evidence, name) for name in EVIDENCE)]
+    "kernel",
+    [
+        rollouts,
+        iterate,
+        transitions,
+        getattr(compiled_tables, "_tables"),  # noqa: B009 (private)
+        *(getattr(compiled_evidence, name) for name in EVIDENCE),
+    ],
 )
 def test_each_kept_kernel_closes_over_its_sources(kernel):
     """numba looks at no other file than the kernel's own, and at no globals: it would run the code of before."""
@@ -70,6 +77,10 @@ def test_all_that_is_compiled_in_is_among_the_sources():
         if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("planner.")
     }
     types_only = {"planner/types.py"}
+    evidence = ast.walk(ast.parse((PLANNER / "belief/compiled_evidence.py").read_text(encoding="utf-8")))
+    modules = (node.module for node in evidence if isinstance(node, ast.ImportFrom) and node.module)
+    imported |= {module.replace(".", "/") + ".py" for module in modules if ".belief.compiled_" in module}
+    assert "planner/belief/compiled_cell.py" in imported
     assert imported - types_only <= {path.relative_to(PLANNER.parent).as_posix() for path in sources}
     assert "planner/belief/grid.py" in imported
 

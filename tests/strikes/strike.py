@@ -24,13 +24,13 @@ FLIGHT = frozenset({16, 20, 21, 22, 115, 176, 178, 192, 400})
 WATCHED_S = 3.0
 NOTICED_S = 1.0
 REPORT_S = 0.12
-"""At most so long after a change the autopilot reports its mode (ten times a second)."""
+"""The autopilot reports its mode at most this long after a change (ten times a second)."""
 STICKS_S = 0.5
 READY_S = 120.0
 CRITICAL = 5
 """MAV_STATE of a HEARTBEAT."""
 STORY_FROM_S = 2.0
-"""A story begins so long before its strike."""
+"""How long before its strike a story begins."""
 STALE_S = 0.15
 """A report of the mode that was under way inside the autopilot when the pilot took it may still be of before."""
 

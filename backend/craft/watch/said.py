@@ -10,7 +10,7 @@ from hardware.reasons.vehicle_news import AutopilotRepeats, AutopilotSaid, Autop
 AGAIN_S = 10.0
 """A text is repeated no sooner, and only once it was heard twice as often as was last said."""
 FORGOTTEN_S = 120.0
-"""A text that was not heard for so long is over; when it comes again it is new."""
+"""A text that was not heard for this long is over; when it comes again it is new."""
 MOST_TEXTS = 20
 BURST, REFILL_S = 8, 5.0
 """How many new texts pass at once, and the seconds before each further one."""

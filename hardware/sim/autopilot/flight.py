@@ -119,7 +119,7 @@ class Flight:
         self.demand.yaw_rate_limit = rate_limit
 
     def turn_by(self, degrees: float, rate_limit: float) -> None:
-        """Turn by so much (clockwise positive) from where the nose is now."""
+        """Turn by `degrees` (clockwise positive) from where the nose is now."""
         self.demand.heading = self.copter.heading + degrees
         self.demand.yaw_rate_limit = rate_limit
 

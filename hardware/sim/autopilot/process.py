@@ -37,7 +37,7 @@ class Schedule:
     station_timeout: a ground station is not taken for lost earlier, whatever the parameter says: its heartbeats come by
     the wall's clock and its restart takes wall time, however fast the simulation runs.
     clock_rate: the vehicle's seconds in one of the wall's times `speedup`: a cheap crystal, or an overloaded simulator.
-    parent: ends when this process (our parent) is gone. linger: ends when nobody was heard for so long.
+    parent: ends when this process (our parent) is gone. linger: ends when nobody was heard for this long, in seconds.
     """
 
     speedup: float = 1.0

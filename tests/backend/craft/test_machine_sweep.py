@@ -1,143 +1,25 @@
-"""The craft machine in every state against every input, whoever flies and whatever has become of the search."""
+"""What holds in every state that the craft machine can reach, whatever input it is given."""
 
 from __future__ import annotations
 
-import gc
-from collections import deque
-from dataclasses import dataclass, replace
-from functools import cache
-from itertools import product
-from typing import get_args
-
 import pytest
-from craft_inputs import AUTHORITIES, CLOCK_ODD, every_craft_input
-from craft_walk import PHASES, VEHICLE, CraftWalk, craft_in, moves, refusal, sent
-from facts import FAILSAFE, HOME, LANDED_BY_PILOT, SPEC, WAITING_SPEC, rejected
+from craft_inputs import CLOCK_ODD
+from craft_sweep import Step, reachable, stepped, steps
+from craft_walk import PHASES, VEHICLE, moves, sent
+from facts import HOME, rejected
 
 from backend import commands
 from backend.craft import effects, inputs
-from backend.craft.effects import CraftEffect
 from backend.craft.ladder import Ladder
 from backend.craft.low_battery import COUNTDOWN_S
-from backend.craft.machine import transition
-from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, evolve, pilot_has
+from backend.craft.state import AUTOMATIC, HOMEWARD, pilot_has
 from backend.craft.who_flies import kept_of
-from backend.events import MissionEnded, OrderDone, OrderNotDone, PreflightChecked
+from backend.events import OrderDone, OrderNotDone
 from backend.reasons.flight import OrderName
-from backend.reasons.search import Localized
 from backend.search.effects import Record
-from backend.search.inputs import SearchOver
-from backend.search.machine import transition as transition_search
-from backend.search.state import SearchState, Stage
-from backend.search.state import evolve as evolve_search
 
 # A million steps, made once, and without the tracer that would make them five times as slow.
 pytestmark = [pytest.mark.no_cover, pytest.mark.timeout(900)]
-
-STAGES: tuple[Stage, ...] = get_args(Stage)
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    craft: CraftState
-    search: SearchState
-    given: inputs.CraftInput
-    after: CraftState
-    asked: tuple[CraftEffect, ...]
-
-    @property
-    def command(self) -> commands.ForCraft | None:
-        return self.given.command if isinstance(self.given, inputs.CraftOrdered) else None
-
-    @property
-    def carried_out(self) -> bool:
-        return self.command is not None and refusal(self.asked) is None
-
-    @property
-    def about(self) -> str:
-        return f"{self.given} in {self.craft.phase}, {self.craft.authority.who}, {self.search.stage}"
-
-
-def stepped(craft: CraftState, search: SearchState, given: inputs.CraftInput) -> Step:
-    after, asked = transition(craft, search, given, 2_000.0)
-    return Step(craft, search, given, after, asked)
-
-
-def search_after(step: Step) -> SearchState:
-    """The search folded on, and over when the machine says so."""
-    search = step.search
-    for effect in step.asked:
-        if isinstance(effect, Record):
-            search = evolve_search(search, effect.event, 2_000.0)
-        elif isinstance(effect, effects.LeaveSearch):
-            search, _ = transition_search(search, SearchOver(effect.because, effect.outcome), 2_000.0)
-    return search
-
-
-def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
-    """What of a state matters for what may be sent."""
-    ladder = craft.ladder
-    return (
-        craft.phase,
-        kept_of(craft.authority),
-        search.stage,
-        search.localized,
-        search.beliefs_current,
-        craft.engaged,
-        craft.searching,
-        craft.took_off,
-        craft.automatic,
-        craft.counting_down,
-        craft.countdown_stopped,
-        craft.chosen is None,
-        craft.reached,
-        "vehicle" in craft.links_down,
-        ladder and (ladder.way, ladder.stage),
-    )
-
-
-@cache
-def swept() -> tuple[tuple[tuple[CraftState, SearchState], ...], tuple[Step, ...]]:
-    """One state of each kind that is reached from the ground by inputs and by what the search learns meanwhile,
-    and what each does with every input."""
-    found: dict[tuple[object, ...], tuple[CraftState, SearchState]] = {}
-    ahead: deque[tuple[CraftState, SearchState]] = deque()
-    taken: list[Step] = []
-
-    def reach(craft: CraftState, search: SearchState) -> None:
-        key = key_of(craft, search)
-        if key not in found:
-            found[key] = (craft, search)
-            ahead.append((craft, search))
-
-    for spec in (SPEC, WAITING_SPEC):
-        walk = CraftWalk(spec)
-        reach(walk.craft, walk.search)
-    gc.disable()  # all of it is kept, and the collector would walk through it over and over
-    while ahead:
-        craft, search = ahead.popleft()
-        for given in every_craft_input(craft, search):
-            step = stepped(craft, search, given)
-            taken.append(step)
-            known_search = search_after(step)
-            if step.after is not craft or known_search is not search:
-                reach(step.after, known_search)
-        for localized in (False, True):
-            known = CraftWalk()
-            known.craft, known.search = craft, search
-            known.believe(localized)
-            reach(known.craft, known.search)
-    gc.freeze()
-    gc.enable()
-    return tuple(found.values()), tuple(taken)
-
-
-def reachable() -> tuple[tuple[CraftState, SearchState], ...]:
-    return swept()[0]
-
-
-def steps() -> tuple[Step, ...]:
-    return swept()[1]
 
 
 def test_the_sweep_reaches_every_phase_with_whoever_may_fly_then_before_and_after_the_end() -> None:
@@ -171,12 +53,11 @@ def test_nothing_is_sent_while_somebody_else_flies_until_an_operator_takes_contr
 
 
 def test_the_end_of_a_failsafe_changes_nothing_but_what_is_said() -> None:
-    for step in steps():
-        if isinstance(step.given, inputs.FailsafeEnded):
-            assert {type(effect) for effect in step.asked} <= {Record}, step.about
-            assert (step.after.phase, step.after.authority) == (step.craft.phase, step.craft.authority), step.about
-            said = step.craft.phase in ("hold", *HOMEWARD) and not step.craft.taken_over
-            assert (step.after != step.craft) == said, step.about
+    for step in steps(inputs.FailsafeEnded):
+        assert {type(effect) for effect in step.asked} <= {Record}, step.about
+        assert (step.after.phase, step.after.authority) == (step.craft.phase, step.craft.authority), step.about
+        said = step.craft.phase in ("hold", *HOMEWARD) and not step.craft.taken_over
+        assert (step.after != step.craft) == said, step.about
 
 
 def test_control_is_taken_by_an_operators_deed_alone_and_from_a_pilot_by_resuming_alone() -> None:
@@ -190,7 +71,7 @@ def test_control_is_taken_by_an_operators_deed_alone_and_from_a_pilot_by_resumin
 
 
 def test_hold_and_return_work_on_every_engaged_craft_unless_a_pilot_flies() -> None:
-    for step in steps():
+    for step in steps(inputs.CraftOrdered):
         if not step.craft.engaged or step.craft.taken_over:
             continue
         match step.command:
@@ -234,7 +115,7 @@ def under_way(step: Step) -> Ladder | None:
 
 def test_an_order_that_is_not_done_is_told_and_tried_again_or_waits_for_the_link() -> None:
     seen = 0
-    for step in steps():
+    for step in steps(inputs.WorkFailed):
         ladder = under_way(step)
         if ladder is None or ladder.stage != "tried":
             continue
@@ -252,7 +133,7 @@ def test_an_order_that_is_not_done_is_told_and_tried_again_or_waits_for_the_link
 
 def test_a_rung_that_waits_is_commanded_when_its_time_has_come_and_at_no_other() -> None:
     command = {"hold": effects.HoldVehicle(), "return": effects.ReturnHome(), "land": effects.Land()}
-    for step in steps():
+    for step in steps(inputs.TimerExpired):
         if step.given != inputs.TimerExpired("order"):
             continue
         ladder = under_way(step)
@@ -275,7 +156,7 @@ def test_a_newer_order_takes_the_place_of_the_one_under_way() -> None:
     kinds: dict[type[commands.CraftCommand], OrderName] = {
         commands.Hold: "hold", commands.Return: "return", commands.Land: "land", commands.Abort: "abort",
     }  # fmt: skip
-    for step in steps():
+    for step in steps(inputs.CraftOrdered):
         order = kinds.get(type(step.command)) if step.carried_out and step.command is not None else None
         if order is not None and not step.craft.taken_over:
             assert step.after.ladder == Ladder(order), step.about
@@ -309,7 +190,7 @@ def test_a_countdown_runs_in_hold_only_and_is_stopped_once() -> None:
 
 
 def test_the_lower_the_battery_the_less_is_asked() -> None:
-    for step in steps():
+    for step in steps(inputs.BatteryLow):
         if not isinstance(step.given, inputs.BatteryLow) or not step.craft.engaged:
             continue
         ours = not (step.craft.taken_over or step.craft.authority.who == "failsafe")
@@ -357,7 +238,7 @@ def test_after_the_search_is_over_a_craft_only_holds_or_comes_home() -> None:
 
 
 def test_what_is_objected_to_is_not_done() -> None:
-    for step in steps():
+    for step in steps(inputs.CraftOrdered):
         objected = isinstance(step.given, inputs.CraftOrdered) and step.given.objections
         if objected and isinstance(step.command, commands.Start | commands.Resume | commands.Override):
             assert not step.carried_out, step.about
@@ -366,14 +247,14 @@ def test_what_is_objected_to_is_not_done() -> None:
 
 
 def test_a_refused_order_sends_nothing_and_leaves_the_phase() -> None:
-    for step in steps():
+    for step in steps(inputs.CraftOrdered):
         if step.command is not None and not step.carried_out:
             assert not any(isinstance(e, (*VEHICLE, effects.CancelWork, effects.TakeControl)) for e in step.asked)
             assert step.after.phase == step.craft.phase, step.about
 
 
 def test_a_pilot_who_takes_over_silences_everything_at_once() -> None:
-    for step in steps():
+    for step in steps(inputs.AuthorityHeard):
         heard = step.given.authority if isinstance(step.given, inputs.AuthorityHeard) else None
         if heard is not None and pilot_has(heard) and step.craft.engaged and not step.craft.taken_over:
             assert step.asked[0] == effects.CancelWork(), step.about
@@ -385,44 +266,3 @@ def test_what_is_asked_of_a_craft_on_its_way_home_never_sends_it_out_again() -> 
     for step in steps():
         if step.craft.phase in HOMEWARD and step.command is None:
             assert step.after.phase not in AUTOMATIC, step.about
-
-
-def of_stage(search: SearchState, stage: Stage) -> SearchState:
-    match stage:
-        case "draft" | "ready":
-            checked = evolve_search(replace(search, started_at_s=None, outcome=None), PREFLIGHT, 0.0)
-            return replace(checked, passed=stage == "ready")
-        case "open":
-            return replace(search, started_at_s=1_000.0, outcome=None)
-        case "ended":
-            begun = replace(search, started_at_s=1_000.0)
-            return evolve_search(begun, MissionEnded(outcome="aborted", reason=Localized(), mission_time_s=1.0), 0.0)
-
-
-PREFLIGHT = PreflightChecked(passed=True, checks=[])
-
-
-@pytest.mark.parametrize("phase", PHASES)
-def test_every_input_is_answered_in_every_phase_whoever_flies_in_whatever_stage(phase: str) -> None:
-    """States that cannot be reached, too: whatever a journal holds, the craft can be held."""
-    walk = craft_in(phase)  # type: ignore[arg-type]
-    for authority, stage, silent in product(AUTHORITIES, STAGES, (False, True)):
-        down = frozenset({"vehicle"}) if silent else frozenset()
-        craft = replace(walk.craft, authority=authority, links_down=down)  # type: ignore[arg-type]
-        search = of_stage(walk.search, stage)
-        for given in every_craft_input(craft, search):
-            step = stepped(craft, search, given)
-            folded = craft
-            for effect in step.asked:
-                if isinstance(effect, Record):
-                    folded = evolve(folded, effect.event)
-            assert folded == step.after, "the new state is the fold of the recorded facts"
-            if isinstance(step.command, commands.Hold) and craft.engaged and not craft.taken_over:
-                assert effects.HoldVehicle() in step.asked
-                assert step.after.phase == "hold"
-
-
-def test_who_has_control_after_a_landing_is_still_the_pilot_and_a_failsafe_never_is() -> None:
-    craft = craft_in("manual").craft
-    assert replace(craft, authority=LANDED_BY_PILOT).taken_over
-    assert not replace(craft, authority=FAILSAFE).taken_over

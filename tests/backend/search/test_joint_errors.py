@@ -13,8 +13,9 @@ from ground import AREA, FRAME, HOME, towards
 from backend.events import BearingMeasured, BeliefUpdated, PersonSource, SilenceFact, SweepRejected
 from backend.reasons.search import BearingsCorrected
 from backend.search.lessons import errors_now
-from backend.search.localization import Localization, localization, source_name
+from backend.search.localization import Localization, localization
 from backend.search.machine import SearchStep, doubt_headings
+from backend.search.planner_bearings import source_name
 from backend.search.planning import foreseen
 from backend.search.source_priors import priors_of, unknown_errors
 from backend.search.state import SearchState

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from backend.events import BearingMeasured, Peak
 from backend.reasons.search import HeadingsAskew
 from backend.search.errors import MissionInputError
-from backend.search.localization import KEEP_OFF_M, Localization, localization
+from backend.search.localization import Localization, localization
+from backend.search.problem import KEEP_OFF_M
 from backend.search.task import search_task
 from backend.spec import (
     EmitterSpec,

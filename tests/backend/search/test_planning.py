@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from backend.events import PersonSource
-from backend.search.localization import Localization, localization, source_name
+from backend.search.localization import Localization, localization
+from backend.search.planner_bearings import source_name
 from backend.search.planning import cost_of, foreseen, in_nine_of_ten, next_place, next_place_together, way_to
 from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon
 from hardware.readings import Place

@@ -13,7 +13,7 @@ from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.search import BearingTimeImpossible, BearingTooFar, TakenEarlier, WhichEmitter
 from backend.search.errors import MissionInputError
 from backend.search.inputs import BearingsArrived
-from backend.search.localization import own_sigma_deg, source_name
+from backend.search.planner_bearings import own_sigma_deg, source_name
 from backend.search.reported import AHEAD_S, LATEST_S, ReportedBearing, reported_fact
 from backend.search.state import SearchState
 from backend.spec import Place

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from planner.belief import compiled_evidence, evidence
+from planner.belief.compiled_tables import RESCALED_EVERY
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.evidence import sightings
 from planner.belief.grid import prior_belief
@@ -67,7 +68,7 @@ def random_bearings(rng, count):
     ]
 
 
-@pytest.mark.parametrize("count", [1, 2, 5, compiled_evidence.RESCALED_EVERY, 19])
+@pytest.mark.parametrize("count", [1, 2, 5, RESCALED_EVERY, 19])
 def test_the_compiled_evidence_is_that_of_the_readable_one(count):
     rng = np.random.default_rng(count)
     seen = sightings(random_bearings(rng, count))
@@ -97,7 +98,7 @@ def test_the_compiled_evidence_of_whole_sweeps_is_that_of_the_readable_one(count
         assert ours == pytest.approx(theirs, abs=2e-3 * (count + 1))
 
 
-@pytest.mark.parametrize("count", [1, 2, 5, compiled_evidence.RESCALED_EVERY, 19])
+@pytest.mark.parametrize("count", [1, 2, 5, RESCALED_EVERY, 19])
 @pytest.mark.parametrize("whole", [False, True])
 def test_a_weigher_asked_in_parts_says_what_the_evidence_does(count, whole):
     rng = np.random.default_rng(count)

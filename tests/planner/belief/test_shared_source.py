@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from planner.belief import compiled_evidence, evidence, shared_source
+from planner.belief.compiled_tables import RESCALED_EVERY
 from planner.belief.evidence import sightings
 from planner.belief.grid import digest
 from planner.belief.joint import JointBelief, joint_prior, log_prior, places_besides, update_joint
@@ -120,7 +121,7 @@ def test_the_belief_after_sharing_is_the_marginal_over_its_own_cells():
         assert found.errors[0].bias == pytest.approx(mean, abs=np.deg2rad(0.02))
 
 
-@pytest.mark.parametrize("count", [1, 2, compiled_evidence.RESCALED_EVERY + 3])
+@pytest.mark.parametrize("count", [1, 2, RESCALED_EVERY + 3])
 def test_the_compiled_evidence_by_node_is_the_plain_one(count):
     rng = np.random.default_rng(count)
     bearings = [

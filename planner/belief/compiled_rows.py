@@ -1,0 +1,89 @@
+# pyright: standard
+"""Loops over a row (b,) of nodes in place: the compiler makes vector instructions of them.
+
+They are calls of their own so that it knows of each argument that it is one row: no other array overlaps it, and no
+index is negative.
+"""
+
+from __future__ import annotations
+
+from planner.compiling import jit
+
+
+@jit
+def interpolated(density, lower, upper, below, above):
+    """Two rows of a table, weighed, onto the nodes that they are cut to.
+
+    An index that might be negative would keep the loop from becoming vectors.
+    """
+    for b in range(len(density)):
+        density[b] += below * lower[b] + above * upper[b]
+
+
+@jit
+def weighed(row, density, odds):
+    """A row times what a bearing says at each node, relative to an outlier's density."""
+    for b in range(len(density)):
+        row[b] *= 1.0 + odds * density[b]
+
+
+@jit
+def weighed_at_once(row, lower, upper, below, above):
+    """The same of one peak, its two rows of the table already times the odds."""
+    for b in range(len(row)):
+        row[b] *= 1.0 + (below * lower[b] + above * upper[b])
+
+
+@jit
+def copied(row, from_row):
+    """Into `row`."""
+    for b in range(len(row)):
+        row[b] = from_row[b]
+
+
+@jit
+def times(row, factor):
+    """Each entry of it."""
+    for b in range(len(row)):
+        row[b] *= factor
+
+
+@jit
+def largest(row):
+    """Of entries that are not negative; 0 of none."""
+    top = 0.0
+    for b in range(len(row)):
+        top = max(top, row[b])
+    return top
+
+
+@jit
+def total(row):
+    """The sum of its entries."""
+    found = 0.0
+    for b in range(len(row)):
+        found += row[b]
+    return found
+
+
+@jit
+def dot(row, other):
+    """The sum of the products of their entries."""
+    found = 0.0
+    for b in range(len(row)):
+        found += row[b] * other[b]
+    return found
+
+
+@jit
+def added(found, row, apart, weight):
+    """To `found`: weight times by how much `row` differs from `apart`."""
+    for b in range(len(row)):
+        found[b] += weight * (row[b] - apart)
+
+
+@jit
+def added_beside(found, row, prior, apart, weight):
+    """To `found`: weight times by how much `row` differs from its prior times `apart`."""
+    for b in range(len(row)):
+        found[b] += weight * (row[b] - apart * prior[b])
