@@ -78,6 +78,8 @@ def proposing(screen: Screen) -> None:
 
 
 def last_bearing(screen: Screen) -> None:
+    if screen.part("scene-switch").get_attribute("aria-pressed") == "true":  # since an earlier picture
+        screen.part("scene-switch").click()
     screen.map_ready()
     if screen.part("card-events").is_visible():
         screen.part("card-events").click()
