@@ -74,6 +74,11 @@ def test_on_a_tablet_the_map_has_half_the_screen(server: Server, open_screen: Op
     screen.map_ready()
     screen.expect_phase("flying", "measuring")
     assert box(screen, "map")["height"] >= 0.5 * SIZES["tablet"][1]
+    draft = open_screen(server, f"#/mission/{server.draft()}", **sized("tablet"))
+    draft.map_ready()
+    expect(draft.part("check").first).to_be_visible()
+    assert box(draft, "map")["height"] >= 0.5 * SIZES["tablet"][1], "before the start too"
+    expect(draft.part("start")).to_be_in_viewport(ratio=1)
     too_wide = "[...document.querySelectorAll('.panel')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
     assert screen.evaluate(too_wide) == 0
 
