@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import FloatRect, Position, expect
-from screen import OpenScreen, Screen
+from screen import AIM_MAP, OpenScreen, Screen
 from served import Server
 
 from tests.browser.sweep import SIZES
@@ -86,6 +86,7 @@ def test_on_a_tablet_the_map_has_half_the_screen(server: Server, open_screen: Op
 def test_a_tap_marks_the_place_under_the_thumb_on_a_low_screen_too(server: Server, open_screen: OpenScreen) -> None:
     low = {"viewport": {"width": 375, "height": 560}}
     screen = open_screen(server, f"#/mission/{server.draft()}/bearings", **low)
+    screen.page.locator(AIM_MAP).wait_for()
     chart = box(screen, "aim-map")
     assert chart["width"] > 1.2 * chart["height"], "the square of the map leaves ground on both sides"
     thumb: Position = {"x": 0.35 * chart["width"], "y": 0.4 * chart["height"]}
