@@ -69,6 +69,34 @@ def test_a_phone_shows_the_map_and_one_card_and_its_orders_lie_at_the_thumb(
     expect(screen.part("menu-health")).to_have_count(0)
 
 
+FITS = """(select) => {
+  const { font, paddingLeft, paddingRight, appearance } = getComputedStyle(select);
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = font;
+  const arrow = appearance === "none" ? 0 : 16;
+  const room = select.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - arrow;
+  return pen.measureText(select.selectedOptions[0].textContent).width <= room + 1;
+}"""
+
+OVERFLOWING = """() => [...document.querySelectorAll("button.urgent")]
+  .filter((one) => one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight)
+  .map((one) => one.textContent)"""
+
+
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_the_words_of_the_orders_stay_within_their_buttons_in_large_german(
+    server: Server, open_screen: OpenScreen, size: str
+) -> None:
+    screen = open_screen(server, EXAMPLE, {"language": "de", "scale": 1.3}, **sized(size))
+    screen.expect_phase("flying", "measuring")
+    expect(screen.part("land")).to_be_visible()
+    assert screen.evaluate(OVERFLOWING) == []
+    if size == "phone":
+        screen.part("card-events").click()
+    expect(screen.part("jump")).to_be_in_viewport(ratio=1)
+    assert screen.part("jump").evaluate(FITS), "what the select is for can be read"
+
+
 def test_on_a_tablet_the_map_has_half_the_screen(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, EXAMPLE, **sized("tablet"))
     screen.map_ready()

@@ -1122,7 +1122,7 @@ export const de: Record<MessageKey, string> = {
   "calibration.map": "Wo Peilungen genommen wurden; falsche sind durchgekreuzt ({outliers} von {bearings})",
   "edit.profile.back": "Wie vor dem {date}",
   "timeline.pace": "Tempo",
-  "timeline.jump": "Springe zu …",
+  "timeline.jump": "Gehe zu …",
   "timeline.jump.decision": "Entscheidung",
   "timeline.jump.bearing": "Peilung",
   "timeline.jump.alert": "Warnung",
