@@ -202,13 +202,14 @@ def test_a_flight_is_held_sent_elsewhere_and_resumed_with_a_thumb(
     screen.expect_phase("planning", "flying", "measuring")
     card(screen, "estimate")
     expect(part("time-left")).to_be_visible()
-    page.set_viewport_size(dict(zip(("width", "height"), reversed(SIZES[size]), strict=True)))
+    width, height = SIZES[size]
+    page.set_viewport_size({"width": height, "height": width})
     for order in ("abort", "hold", "return"):
         expect(part(order)).to_be_in_viewport(ratio=1)
     assert not screen.evaluate(TOO_WIDE)
     box = part("map").bounding_box()
     assert box is not None
-    assert box["height"] > 0.35 * SIZES[size][0], "turned on its side, the screen still shows where it is"
+    assert box["height"] > 0.35 * width, "turned on its side, the screen still shows where it is"
     part("abort").tap()
     screen.expect_phase("returning", "landing", "aborted")
     until = time.monotonic() + 180
