@@ -110,6 +110,10 @@ def rules_against(
         share = float(gains[0] / gains[1:].max())
         if share < TELLING_SHARE:
             found.append(TellsLittleOfBias(100.0 * share, 100.0 * TELLING_SHARE))
-    if not found and problem.action_spacing is not None:
-        found.append(BetweenPlaces(problem.action_spacing))
-    return tuple(found)
+    return tuple(found) or between_places(problem)
+
+
+def between_places(problem: Problem) -> tuple[BetweenPlaces, ...]:
+    """What remains where no rule forbids a quicker place. For several emitters nothing else does: rollouts themselves
+    let a bearing tell nothing where it repeats a bias or is taken too near (`planner.policy.several`)."""
+    return () if problem.action_spacing is None else (BetweenPlaces(problem.action_spacing),)

@@ -12,7 +12,7 @@ from backend.reasons import Reason, carried
 from backend.search.localization import Localization
 from backend.search.planning import candidate_facts, cost_of, decide, in_nine_of_ten, to_plan, way_to
 from backend.spec import Place
-from planner.comparison import difference_between, difference_together, rules_against
+from planner.comparison import between_places, difference_between, difference_together, rules_against
 from planner.policy.several import Wanted
 from planner.types import PlannerError
 
@@ -112,7 +112,8 @@ def compare(
     compared = Comparison(found.mean, found.std_error)
     if not compared.quicker:
         return compared
-    rules = () if together else rules_against(*problems[0], here, by_claim=found.by_claim)
+    (problem, belief), *_ = problems
+    rules = between_places(problem) if together else rules_against(problem, belief, here, by_claim=found.by_claim)
     return replace(compared, rules=tuple(carried(rule) for rule in rules))
 
 

@@ -19,7 +19,7 @@ from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, Mac
 from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records, to_texts
 from backend.store.paths import unpacked_path
-from backend.store.patience import StarvedError, patience
+from backend.store.patience import CrowdedError, StarvedError, patience
 from backend.store.tables import events, missions, paths, sweeps, tracks
 from backend.store.upgrade import FIRST_FORM, OF_A_SWEEP, Imports, kinds_of_old
 
@@ -237,7 +237,7 @@ def unanswered(error: BaseException, engine: AsyncEngine) -> Unanswered:
         if isinstance(orig, sqlite3.Error) and getattr(orig, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_BUSY:
             return DatabaseTaken()
         if isinstance(error, TimeoutError):
-            return DiskBusy()
+            return MachineBusy() if isinstance(error, CrowdedError) else DiskBusy()
     return DatabaseSilent(why(error))
 
 

@@ -225,13 +225,15 @@ def times_together(
     infinite by way of a place without a way to it.
     """
     simulations = [_simulation(one, platform, options.base_policy, None, HORIZON) for one in wanted]
-    allowed = len(_places(wanted, simulations[0], ()))
+    allowed = _places(wanted, simulations[0], ())
+    beside = np.vstack([places, allowed])
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
-    near = standoff_among(wanted[0].problem, allowed, len(wanted))
+    near = standoff_among(wanted[0].problem, len(allowed), len(wanted))
     members: list[_Member] = []
     for one, simulation, rng in zip(wanted, simulations, chances, strict=True):
         choice = fisher(one.problem, one.belief, platform)
-        telling = telling_beside_bias(one.problem, one.belief, places)
+        # beside all that the planner compares: of two places that tell little, neither is one that tells much
+        telling = telling_beside_bias(one.problem, one.belief, beside)[: len(places)]
         members.append(_member(one, simulation, places, (choice.x, choice.y), rng, 0, near, telling))
     chosen = np.arange(len(places))
     costs = np.stack([member.costs(chosen, 0, paths) for member in members])

@@ -11,6 +11,9 @@ from playwright.sync_api import Locator, Page, expect
 
 expect.set_options(timeout=60_000)
 
+AIM_MAP = "[data-testid=aim-map][aria-busy=false]"
+"""The map for one thumb, once it shows a search: before that it takes no taps."""
+
 AUTOMATIC = ("taking_off", "planning", "flying", "measuring")
 
 

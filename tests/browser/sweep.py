@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
 from tests.browser.conftest import CHROMIUM, SETTINGS, serving
-from tests.browser.screen import Screen
+from tests.browser.screen import AIM_MAP, Screen
 from tests.browser.served import Server
 from tests.browser.stock import TAGS, brought, search_of_tags, ways
 
@@ -78,6 +78,8 @@ def proposing(screen: Screen) -> None:
 
 
 def last_bearing(screen: Screen) -> None:
+    if screen.part("scene-switch").get_attribute("aria-pressed") == "true":  # since an earlier picture
+        screen.part("scene-switch").click()
     screen.map_ready()
     if screen.part("card-events").is_visible():
         screen.part("card-events").click()
@@ -121,7 +123,7 @@ def advised(screen: Screen) -> None:
     if name.is_visible():
         name.fill("Ada")
     screen.part("report-mode-here").click()
-    screen.part("aim-map").click(position={"x": 90, "y": 230})
+    screen.page.locator(AIM_MAP).click(position={"x": 90, "y": 230})
     screen.part("advice-walking").click()
     expect(screen.part("advice-said")).to_be_visible()
 

@@ -24,6 +24,7 @@ from backend.store.entries import EventRow, to_records
 from backend.store.upgrade import FIRST_FORM
 from backend.wire.bundle import bundle
 from hardware.frame import LocalFrame
+from tests.browser.stock import search_of_tags
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
 
@@ -214,6 +215,20 @@ def test_two_missions_are_one_report_with_an_overview(server: Server, open_scree
     screen.part("compare-add").select_option(second)
     expect(screen.part("compare-line")).to_have_count(2)
     expect(screen.part("compare-row")).to_have_count(2)
+
+
+def test_a_report_of_eight_tags_draws_those_of_which_anything_is_known(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    """Three of them were heard: five empty pictures would be three sheets of paper."""
+    screen = open_screen(server, f"#/report/{search_of_tags(server)}")
+    expect(screen.part("report")).to_have_attribute("data-ready", "true")
+    expect(screen.part("report-emitter")).to_have_count(8)
+    expect(screen.part("report-map")).to_have_count(3)
+    for emitter, drawn in zip(screen.part("report-emitter").all(), (1, 1, 1, 0, 0, 0, 0, 0), strict=True):
+        expect(emitter.get_by_test_id("report-map")).to_have_count(drawn)
+    sheet = screen.page.pdf(path=tmp_path / "tags.pdf", prefer_css_page_size=True)
+    assert sheet.count(b"/Type /Page\n") <= 4
 
 
 def test_before_the_first_bearing_no_place_is_said_and_a_pointer_scrolls_nothing_away(

@@ -10,7 +10,7 @@ from uuid import uuid4
 import httpx
 import pytest
 from playwright.sync_api import Page, Position, expect
-from screen import OpenScreen
+from screen import AIM_MAP, OpenScreen
 from served import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
@@ -24,8 +24,8 @@ TOP: Position = {"x": 180, "y": 90}
 def hear(page: Page, stand: Position, towards: Position) -> None:
     """Tap where one stands, then where it comes from, then send."""
     page.get_by_test_id("report-mode-here").click()
-    page.get_by_test_id("aim-map").click(position=stand)
-    page.get_by_test_id("aim-map").click(position=towards)
+    page.locator(AIM_MAP).click(position=stand)
+    page.locator(AIM_MAP).click(position=towards)
     page.get_by_test_id("report-send").click()
 
 
@@ -82,7 +82,7 @@ def test_a_search_without_a_craft_is_advised_until_it_is_localized(server: Serve
     page = open_screen(server, f"#/mission/{mission}/bearings", **PHONE).page
     page.get_by_test_id("report-name").fill("Ada")
     expect(page.get_by_test_id("advice-walking")).to_be_disabled()
-    page.get_by_test_id("aim-map").click(position=LEFT)
+    page.locator(AIM_MAP).click(position=LEFT)
     ring = server.get(f"/api/missions/{mission}")["spec"]["area"]["coordinates"][0]
     lon, lat = (sum(corner[i] for corner in ring[:4]) / 4 for i in (0, 1))
     east = math.cos(math.radians(lat))

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from conftest import serving
 from playwright.sync_api import Page, Position, expect
-from screen import OpenScreen, Screen
+from screen import AIM_MAP, OpenScreen, Screen
 from served import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
@@ -199,7 +199,7 @@ class Walker:
             "x": ring["x"] - chart["x"] + ring["width"] / 2,
             "y": ring["y"] - chart["y"] + ring["height"] / 2,
         }
-        self.page.get_by_test_id("aim-map").click(position=middle)
+        self.page.locator(AIM_MAP).click(position=middle)
         bearing = math.degrees(math.atan2((self.lon - place["lon"]) * self.east, self.lat - place["lat"])) % 360.0
         self.page.get_by_test_id("report-direction").fill(f"{bearing:.0f}")
         self.page.get_by_test_id("report-direction").blur()
@@ -240,7 +240,7 @@ def test_a_search_on_foot_is_advised_over_the_bridge_until_it_is_localized(
     chart = part("aim-map").bounding_box()
     assert chart is not None
     south: Position = {"x": chart["width"] / 2, "y": chart["height"] - 4}
-    part("aim-map").click(position=south)
+    walker.page.locator(AIM_MAP).click(position=south)
     told = walker.asks()
     assert told["unreached"] > 0, "the other shore"
     expect(part("advice-unreached")).to_contain_text("No way leads to")

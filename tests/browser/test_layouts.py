@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import FloatRect, Position, expect
-from screen import OpenScreen, Screen
+from screen import AIM_MAP, OpenScreen, Screen
 from served import Server
 
 from tests.browser.sweep import SIZES
@@ -69,11 +69,44 @@ def test_a_phone_shows_the_map_and_one_card_and_its_orders_lie_at_the_thumb(
     expect(screen.part("menu-health")).to_have_count(0)
 
 
+FITS = """(select) => {
+  const { font, paddingLeft, paddingRight, appearance } = getComputedStyle(select);
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = font;
+  const arrow = appearance === "none" ? 0 : 16;
+  const room = select.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - arrow;
+  return pen.measureText(select.selectedOptions[0].textContent).width <= room + 1;
+}"""
+
+OVERFLOWING = """() => [...document.querySelectorAll("button.urgent")]
+  .filter((one) => one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight)
+  .map((one) => one.textContent)"""
+
+
+@pytest.mark.parametrize("size", ["tablet", "phone"])
+def test_the_words_of_the_orders_stay_within_their_buttons_in_large_german(
+    server: Server, open_screen: OpenScreen, size: str
+) -> None:
+    screen = open_screen(server, EXAMPLE, {"language": "de", "scale": 1.3}, **sized(size))
+    screen.expect_phase("flying", "measuring")
+    expect(screen.part("land")).to_be_visible()
+    assert screen.evaluate(OVERFLOWING) == []
+    if size == "phone":
+        screen.part("card-events").click()
+    expect(screen.part("jump")).to_be_in_viewport(ratio=1)
+    assert screen.part("jump").evaluate(FITS), "what the select is for can be read"
+
+
 def test_on_a_tablet_the_map_has_half_the_screen(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, EXAMPLE, **sized("tablet"))
     screen.map_ready()
     screen.expect_phase("flying", "measuring")
     assert box(screen, "map")["height"] >= 0.5 * SIZES["tablet"][1]
+    draft = open_screen(server, f"#/mission/{server.draft()}", **sized("tablet"))
+    draft.map_ready()
+    expect(draft.part("check").first).to_be_visible()
+    assert box(draft, "map")["height"] >= 0.5 * SIZES["tablet"][1], "before the start too"
+    expect(draft.part("start")).to_be_in_viewport(ratio=1)
     too_wide = "[...document.querySelectorAll('.panel')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
     assert screen.evaluate(too_wide) == 0
 
@@ -81,6 +114,7 @@ def test_on_a_tablet_the_map_has_half_the_screen(server: Server, open_screen: Op
 def test_a_tap_marks_the_place_under_the_thumb_on_a_low_screen_too(server: Server, open_screen: OpenScreen) -> None:
     low = {"viewport": {"width": 375, "height": 560}}
     screen = open_screen(server, f"#/mission/{server.draft()}/bearings", **low)
+    screen.page.locator(AIM_MAP).wait_for()
     chart = box(screen, "aim-map")
     assert chart["width"] > 1.2 * chart["height"], "the square of the map leaves ground on both sides"
     thumb: Position = {"x": 0.35 * chart["width"], "y": 0.4 * chart["height"]}

@@ -9,10 +9,10 @@ import pytest
 
 from planner.belief.grid import prior_belief, update
 from planner.belief.joint import joint_prior, update_joint
-from planner.comparison import difference_between, difference_together, rules_against
+from planner.comparison import between_places, difference_between, difference_together, rules_against
 from planner.options import FIELD
 from planner.plan import plan
-from planner.policy.several import Wanted
+from planner.policy.several import Wanted, times_together
 from planner.reasons import BetweenPlaces, NearerThanStandoff, TellsLittleOfBias
 from planner.types import Bearing, LinearConstantMotion, Problem
 
@@ -78,3 +78,19 @@ def test_several_emitters_are_compared_by_the_mean_of_their_times() -> None:
     wanted = [Wanted(PROBLEM, BELIEF), Wanted(PROBLEM, BELIEF)]
     far = difference_together(wanted, HERE, (-50.0, 170.0), (150.0, -30.0), FIELD, paths=64)
     assert far.mean > 2.0 * far.std_error > 0.0
+
+
+def test_what_a_place_tells_of_several_emitters_does_not_hang_on_the_place_it_is_compared_with() -> None:
+    """With an open compass a bearing beside the last one repeats its error, whatever else was asked about."""
+    joint = update_joint(joint_prior(PROBLEM), replace(SEEN, source="craft"))
+    wanted = [Wanted(PROBLEM, joint), Wanted(PROBLEM, joint)]
+    again, elsewhere, beside = (HERE[0] - 5.0, HERE[1] - 5.0), (150.0, -30.0), (HERE[0] + 5.0, HERE[1] - 5.0)
+    by_way = [
+        times_together(wanted, HERE, np.array([again, other]), FIELD, 64)[0].mean() for other in (elsewhere, beside)
+    ]
+    assert by_way[0] == by_way[1]
+
+
+def test_what_is_quicker_for_several_stands_between_the_places_that_are_compared() -> None:
+    assert between_places(PROBLEM) == (BetweenPlaces(15.0),)
+    assert between_places(replace(PROBLEM, action_spacing=None)) == ()

@@ -556,7 +556,8 @@ export const de: Record<MessageKey, string> = {
   "area.title": "Suchgebiet ändern",
   "area.what":
     "Die Mission hält solange. Peilungen zählen weiter; was Sie zeichnen, kommt zum Gebiet dazu. Vor dem Schieben ändert sich nichts.",
-  "area.notHeld": "Das Gebiet ändert sich nur, während die Mission hält: oben links Halten drücken.",
+  "area.notHeld": "Das Gebiet ändert sich nur, während die Mission hält: zuerst Halten drücken.",
+  "area.over": "Die Mission ist vorbei: ihr Gebiet ändert sich nicht mehr.",
   "area.outlook": "Was dort zu erwarten ist",
   "area.ask": "Was hieße das?",
   "area.asking": "Der Planer wird gefragt …",
@@ -1121,7 +1122,7 @@ export const de: Record<MessageKey, string> = {
   "calibration.map": "Wo Peilungen genommen wurden; falsche sind durchgekreuzt ({outliers} von {bearings})",
   "edit.profile.back": "Wie vor dem {date}",
   "timeline.pace": "Tempo",
-  "timeline.jump": "Springe zu …",
+  "timeline.jump": "Gehe zu …",
   "timeline.jump.decision": "Entscheidung",
   "timeline.jump.bearing": "Peilung",
   "timeline.jump.alert": "Warnung",
@@ -1167,7 +1168,7 @@ export const de: Record<MessageKey, string> = {
   "report.after": "{time} nach dem Start gefunden.",
   "report.found": "Er ist bei {place}, auf etwa {error} genau.",
   "report.perhaps": "Er könnte bei {place} sein, auf etwa {error} genau; sicher ist das noch nicht.",
-  "report.nothing": "Wo er ist, ist nicht bekannt: Es wurde keine Peilung genommen.",
+  "report.nothing": "Es ist nicht bekannt, wo er ist: Es wurde keine Peilung genommen.",
   "report.region":
     "Bei 95 von 100 solchen Suchen ist er im markierten Gebiet von {area}; es reicht {reach} von Ende zu Ende, in Richtung {from} und {to}.",
   "report.parts": "Das Gebiet hat {count} getrennte Teile: Er kann in jedem davon sein.",

@@ -167,7 +167,8 @@ export const pagesEn = {
   "area.change": "Change the search area",
   "area.title": "Change the search area",
   "area.what": "The mission holds meanwhile. Bearings count on; what you draw is added to the area. Nothing changes before you slide.",
-  "area.notHeld": "The area changes in hold only: press Hold at the top left.",
+  "area.notHeld": "The area changes in hold only: press Hold first.",
+  "area.over": "The mission is over: its area changes no more.",
   "area.outlook": "What to expect there",
   "area.ask": "What would it mean?",
   "area.asking": "Asking the planner …",
@@ -507,7 +508,7 @@ export const pagesEn = {
   "report.after": "Localized {time} after the start.",
   "report.found": "It is at {place}, give or take {error}.",
   "report.perhaps": "It may be at {place}, give or take {error}; that is not certain yet.",
-  "report.nothing": "Where it is is not known: no bearing was taken.",
+  "report.nothing": "It is not known where it is: no bearing was taken.",
   "report.region":
     "In 95 of 100 such searches it is inside the marked region of {area}; it reaches {reach} from end to end, along {from} and {to}.",
   "report.parts": "The region has {count} separate parts: it may be in any of them.",

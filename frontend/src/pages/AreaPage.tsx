@@ -66,7 +66,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
           {judged && <OutlookCard judged={judged} />}
           {!held && (
             <p role="status" data-testid="area-not-held">
-              <strong>{t("area.notHeld")}</strong>
+              <strong>{t(mission.value.ended === null ? "area.notHeld" : "area.over")}</strong>
             </p>
           )}
           <ProblemNote desk="area" />

@@ -69,7 +69,7 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
           })}
         </p>
       )}
-      <ReportMap view={view} />
+      {(bearings.length > 0 || place || told.mission.emitters.size === 1) && <ReportMap view={view} />}
       {truth && (
         <p data-testid="report-truth">
           <strong>{place ? t("truth.at", { place: formatPlace(place, coordinates) }) : t("truth.notFound")}</strong>

@@ -78,7 +78,9 @@ export function AimMap({ area, others, advised, way, ways, here, bearing, sigma,
       )),
     [ways, frame.middle[0], frame.middle[1], frame.scale],
   );
+  const isKnown = known.length > 0;
   const tap = (event: MouseEvent & { currentTarget: SVGSVGElement }) => {
+    if (!isKnown) return; // nobody can mean a place on a map of nothing
     const toPicture = event.currentTarget.getScreenCTM()!.inverse(); // a low screen shows the square with ground on both sides
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(toPicture);
     const point = frame.back(x, y);
@@ -95,6 +97,7 @@ export function AimMap({ area, others, advised, way, ways, here, bearing, sigma,
       aria-label={t("report.map")}
       data-testid="aim-map"
       data-mode={mode}
+      aria-busy={!isKnown}
       onClick={tap}
     >
       {area && (

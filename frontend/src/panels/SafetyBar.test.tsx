@@ -183,6 +183,31 @@ it("resumes only what holds or the pilot flies, and only after a slide", () => {
   expect(source.sent).toMatchObject([{ missionId: "m", kind: "resume", craftId: CRAFT }]);
 });
 
+it("asks for a slide no more once what it was for has gone away, and does not come back with it", () => {
+  const status = (reason: CraftStatus["resume_refused"]) => craftStatus({ mission_id: "m", phase: "hold", resume_refused: reason });
+  const told = (...messages: SourceMessage[]) =>
+    act(() => {
+      source.tell(...messages);
+      vi.advanceTimersByTime(200);
+    });
+  show(new FakeSource(), ...inPhase("hold"), someTelemetry(), status(null));
+  act(() => part("resume")!.click());
+  act(() => part("land")!.click());
+  expect(part("resume-slider")).not.toBeNull();
+  expect(part("land-slider")).not.toBeNull();
+  told(status({ code: "no_link" }));
+  expect(part("resume-slider")).toBeNull();
+  told(status(null));
+  expect(part("resume-slider")).toBeNull();
+  expect(part("resume")!.disabled).toBe(false);
+
+  show(new FakeSource(null), someTelemetry({ in_air: false }), craftStatus({}));
+  expect(part("land-slider")).toBeNull();
+  show(new FakeSource(), ...inPhase("hold"), someTelemetry(), status(null));
+  expect(part("land-slider")).toBeNull();
+  expect(part("land")).not.toBeNull();
+});
+
 it("offers to resume only when the server would accept it, and says who has control by authority", () => {
   const taken = { ...NOBODY, who: "pilot", taken_by: "mode", mode: "POSCTL" } as const;
   const flies = (authority: Authority): MissionEvent => ({ kind: "authority_changed", craft_id: CRAFT, authority, by: null });

@@ -48,7 +48,10 @@ function UrgentButton({ kind }: { kind: Urgent }) {
 /** Where it is: what is below is not known, so it takes a slide. */
 function Landing() {
   const target = flying.value;
-  if (!target || target.phase === "manual") return null;
+  const offered = target !== null && target.phase !== "manual";
+  const disarm = () => (landingArmed.value = false);
+  useEffect(() => void (offered || disarm()), [offered]);
+  if (!target || !offered) return null;
   if (!landingArmed.value) {
     return (
       <button type="button" class="urgent" data-testid="land" title={t("bar.land.hint")} onClick={() => (landingArmed.value = true)}>
@@ -56,7 +59,6 @@ function Landing() {
       </button>
     );
   }
-  const disarm = () => (landingArmed.value = false);
   return (
     <div class="bar-slide">
       <SlideToConfirm
@@ -87,8 +89,10 @@ function Resume() {
   const [armed, setArmed] = useState(false);
   const target = flying.value;
   const canResume = (target?.phase === "hold" && target.id !== null) || target?.phase === "manual";
-  if (!target || !canResume) return null;
   const refused = resumeRefused.value;
+  const offered = canResume && refused === null;
+  useEffect(() => void (offered || setArmed(false)), [offered]);
+  if (!target || !canResume) return null;
   if (!armed || refused) {
     return (
       <button

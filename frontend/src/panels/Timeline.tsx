@@ -104,8 +104,9 @@ function Strip({ all }: { all: readonly Recorded[] }) {
     const nearest = eventAt(seconds);
     look(nearest.seq >= lastFlown(all)!.seq ? null : nearest.seq);
   };
+  const scale = rmse.length > 0 ? `${t("timeline.rmse")} ≤ ${formatLength(top, settings.value.units)}` : "";
   return (
-    <div class="strip">
+    <div class="strip" style={{ "--scale": scale.length }}>
       <svg class="strip-ticks" viewBox="0 0 100 30" preserveAspectRatio="none" aria-hidden="true">
         {steps.length > 0 && <path class="strip-rmse" d={`${steps.join("")}H100`} vector-effect="non-scaling-stroke" />}
         <Doings all={all} craftId={mission.value.craftId} share={share} />
@@ -119,14 +120,14 @@ function Strip({ all }: { all: readonly Recorded[] }) {
       </svg>
       <div class="strip-minutes" aria-hidden="true" data-testid="strip-minutes">
         {minutes.map((s) => (
-          <span style={{ left: `${(100_000 * s) / (end - begin)}%` }} key={s}>
+          <span style={{ "--at": (1000 * s) / (end - begin) }} key={s}>
             {s === 0 ? t("timeline.minutes") : s / 60}
           </span>
         ))}
       </div>
-      {rmse.length > 0 && (
+      {scale !== "" && (
         <span class="strip-scale" aria-hidden="true">
-          {t("timeline.rmse")} ≤ {formatLength(top, settings.value.units)}
+          {scale}
         </span>
       )}
       <input

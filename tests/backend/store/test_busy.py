@@ -21,7 +21,7 @@ from backend.store.delivery import DatabaseAway
 from backend.store.digest import fold
 from backend.store.entries import Entry, to_row
 from backend.store.journal import SqlJournal
-from backend.store.patience import StarvedError
+from backend.store.patience import CrowdedError, StarvedError
 from backend.store.reading import unanswered
 
 SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
@@ -102,6 +102,14 @@ async def test_a_database_that_refuses_is_away_however_busy_the_machine_was(benc
     assert isinstance(report.reason, DatabaseSilent)
 
 
+async def test_short_of_processors_is_no_slow_disk_and_excuses_no_server_elsewhere(bench, monkeypatch) -> None:
+    journal = await bench.open()
+    assert unanswered(TimeoutError(), journal._engine) == DiskBusy()
+    assert unanswered(CrowdedError(), journal._engine) == MachineBusy()
+    monkeypatch.setattr(journal._engine.dialect, "name", "postgresql")
+    assert isinstance(unanswered(CrowdedError(), journal._engine), DatabaseSilent)
+
+
 async def test_a_file_that_another_program_writes_to_is_taken_and_not_away(bench, monkeypatch) -> None:
     """As while a bundle is brought in: what is recorded meanwhile waits, and is stored when the other is done."""
     monkeypatch.setattr(delivery, "RETRY_FIRST_S", 0.01)
@@ -145,8 +153,10 @@ async def test_a_flight_does_not_wait_for_a_bundle_that_is_brought_in(bench, mon
     assert (await bringing, await again) == (True, True)
 
 
-async def test_sqlite_that_is_late_on_an_idle_machine_waits_for_its_disk(bench, monkeypatch) -> None:
-    monkeypatch.setattr(patience, "PROMPT_SHARE", 0.0)  # the machine of the tests may be busy itself
+async def test_sqlite_that_is_late_on_an_idle_machine_waits_for_its_disk(bench, monkeypatch, tmp_path) -> None:
+    # the machine of the tests may be busy itself
+    monkeypatch.setattr(patience, "PROMPT_SHARE", 0.0)
+    monkeypatch.setattr(patience, "PRESSURE", tmp_path)
     journal = await bench.open()
     await flown(journal, 0)
     held, write = threading.Event(), delivery._write

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from backend.store import patience as waiting
-from backend.store.patience import StarvedError, patience
+from backend.store.patience import CrowdedError, StarvedError, patience
 
 
 async def test_a_silence_ends_it() -> None:
@@ -57,6 +59,46 @@ async def test_a_silence_while_no_thread_of_ours_gets_its_turn_proves_nothing(mo
     with pytest.raises(StarvedError):
         async with patience(0.6):
             await asyncio.Event().wait()
+
+
+def told(monkeypatch: pytest.MonkeyPatch, cpu_s: Iterator[float], io_s: Iterator[float]) -> None:
+    """As if the kernel told of these waits, one after another."""
+
+    class Pressure:
+        def __init__(self, waits: Iterator[float]) -> None:
+            self._waits = waits
+
+        def read_text(self) -> str:
+            return f"some avg10=9.00 avg60=9.00 avg300=9.00 total={1e6 * next(self._waits):.0f}\nfull total=0\n"
+
+    files = {"cpu": Pressure(cpu_s), "io": Pressure(io_s)}
+    monkeypatch.setattr(waiting, "PRESSURE", type("Folder", (), {"__truediv__": lambda _, name: files[name]})())
+    monkeypatch.setattr(waiting, "PROMPT_SHARE", 0.0)
+
+
+@pytest.mark.parametrize(
+    ("cpu_s", "io_s", "crowded"),
+    [((70.0, 70.9), (5.0, 5.01), True), ((70.0, 70.9), (5.0, 5.9), False), ((70.0, 70.1), (5.0, 5.01), False)],
+)
+async def test_the_kernel_is_asked_whether_a_processor_or_the_disk_was_waited_for(
+    monkeypatch: pytest.MonkeyPatch, cpu_s: tuple[float, float], io_s: tuple[float, float], crowded: bool
+) -> None:
+    told(monkeypatch, iter(cpu_s), iter(io_s))
+    with pytest.raises(TimeoutError) as silent:
+        async with patience(0.3):
+            await asyncio.Event().wait()
+    assert isinstance(silent.value, CrowdedError) == crowded
+
+
+async def test_a_system_that_tells_nothing_of_its_waits_changes_nothing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(waiting, "PRESSURE", tmp_path)
+    monkeypatch.setattr(waiting, "PROMPT_SHARE", 0.0)
+    with pytest.raises(TimeoutError) as silent:
+        async with patience(0.3):
+            await asyncio.Event().wait()
+    assert type(silent.value) is TimeoutError
 
 
 async def test_an_own_time_limit_inside_is_nobodys_silence() -> None:
