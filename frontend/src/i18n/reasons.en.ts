@@ -1054,6 +1054,11 @@ export const reasonsEn: ReasonTable = {
     text: "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
     remedy: "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
   },
+  few_turns_on_a_battery: {
+    text: "A turn takes {turn_s}. As long as wind and craft are not known, a full battery is taken to last for {turns} of them in the middle of the area, and a search needs at least two.",
+    remedy:
+      "Look for fewer emitters or for a signal that is sent more often, ask for fewer pulses a heading, or fly a craft that stays up for long with a smaller reserve.",
+  },
   no_samples: {
     text: "The receiver delivers no samples.",
     remedy: "Check that it is plugged in and not in use by another program.",
@@ -1534,6 +1539,11 @@ export const reasonsEn: ReasonTable = {
     text: "Battery at {charge_percent}: the way home would begin at {left_percent} and takes {needed_percent}; the reserve is {reserve_percent}.",
     remedy: "Return home and change the battery.",
   },
+  turn_beyond_battery: {
+    text: "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not known. With {needed_percent} for the way home and a reserve of {reserve_percent}, not even a full one would do.",
+    remedy:
+      "Ask for one pulse a heading, look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
+  },
   altitude_outside: {
     text: "{altitude_relative_m} above home is outside the allowed {lowest_relative_m} to {highest_relative_m}.",
     remedy: "Change the mission's altitude or its band.",
@@ -1693,6 +1703,11 @@ export const reasonsEn: ReasonTable = {
   frequency_shared: {
     text: "Two emitters send at {frequency_hz}, and not both are tags: no receiver can tell them apart.",
     remedy: "Look for one of them at a time; tags at one frequency are told apart by their periods.",
+  },
+  frequencies_too_near: {
+    text: "Emitters at {first_hz} and {second_hz} are so near to each other that the receiver hears each of them on both channels.",
+    remedy:
+      "From {needed_hz} on they are told apart. Give tags nearer than that one frequency and their periods, and look for other emitters one at a time.",
   },
   too_many_rhythms: {
     text: "More than {most} tags send at {frequency_hz}: too many of their pulses fall together.",
