@@ -53,6 +53,21 @@ class TurnTakesLong:
 
 
 @dataclass(frozen=True, slots=True)
+class FewTurnsOnABattery:
+    """turns: of turn_s each, that a full battery is not taken to last for, with the ways and the reserve."""
+
+    turns: int
+    turn_s: float
+    code: Literal["few_turns_on_a_battery"] = "few_turns_on_a_battery"
+    english: ClassVar[Words] = Words(
+        "A turn takes {turn_s}. As long as wind and craft are not known, not even a full battery is sure to last for "
+        "{turns} of them in the middle of the area, and no search does with fewer.",
+        "Look for fewer emitters or for a signal that is sent more often, ask for fewer pulses a heading, or fly a "
+        "craft that stays up for long with a smaller reserve.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoSamples:
     code: Literal["no_samples"] = "no_samples"
     english: ClassVar[Words] = Words(
@@ -166,6 +181,7 @@ CheckReason = (
     | ReceiverDelivers
     | ReceiverTakesTurns
     | TurnTakesLong
+    | FewTurnsOnABattery
     | NoSamples
     | TagUnheard
     | PatternInUse

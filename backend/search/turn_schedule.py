@@ -24,7 +24,7 @@ SPARE = 1.1
 """The turn is so much slower than the pulses just need: they do not come in step with the headings."""
 SLOWEST_DEG_S = 2.0
 MOST_TURNS = 3
-"""Of one group, however seldom its pulses come."""
+"""Of one group, however seldom its pulses come; one fewer where each heading is to hear one pulse and cannot."""
 CHANGE_S = 1.0
 """From the last of one group to the first sample of the next: opening, tuning and settling."""
 FAR_OFF = 2.0
@@ -34,11 +34,12 @@ FAR_OFF = 2.0
 @dataclass(frozen=True, slots=True)
 class Round:
     """All the way round for one group. emitters: those that are heard, wanted or not, in the specification's order.
-    times: so often, where pulses come too seldom for the slowest turn."""
+    times: so often, where pulses come too seldom for the slowest turn. most: no oftener, though headings stay deaf."""
 
     emitters: tuple[EmitterSpec, ...]
     rate_deg_s: float
     times: int = 1
+    most: int = MOST_TURNS
 
     @property
     def seconds(self) -> float:
@@ -78,7 +79,8 @@ def _round(sensor: SensorSpec, group: tuple[EmitterSpec, ...], wanted: Sequence[
     rate = min(sensor.turn_rate_deg_s, 360.0 / needed_s if needed_s else math.inf)
     rate = max(rate, min(SLOWEST_DEG_S, sensor.turn_rate_deg_s))
     times = math.ceil(needed_s * rate / 360.0 - 1e-6)
-    return Round(group, rate, min(max(times, 1), MOST_TURNS))
+    most = MOST_TURNS if times <= MOST_TURNS else min(1 + sensor.pulses_per_heading, MOST_TURNS)
+    return Round(group, rate, min(max(times, 1), most), most)
 
 
 def heard_at_once(emitters: Sequence[EmitterSpec], band_hz: float | None) -> tuple[tuple[EmitterSpec, ...], ...]:
@@ -95,11 +97,12 @@ def heard_at_once(emitters: Sequence[EmitterSpec], band_hz: float | None) -> tup
     return tuple(tuple(sorted(group, key=emitters.index)) for group in groups)
 
 
-def turn_s(mission: MissionSpec) -> float:
-    """What a turn for all emitters takes, from the order to the bearings: as specified, or as long as it has to where
-    the receiver hears them in groups, or a tag's pulses come so seldom that the specified time is off by far."""
+def turn_s(mission: MissionSpec, wanted: Collection[str] = ()) -> float:
+    """What a turn takes, from the order to the bearings: as specified, or as long as it has to where the receiver hears
+    the emitters in groups, or a tag's pulses come so seldom that the specified time is off by far. wanted: those still
+    looked for, by id; none: all."""
     stated = mission.sensor.measurement_time_s
-    needed = turn_schedule(mission).seconds
+    needed = turn_schedule(mission, wanted or None).seconds
     if mission.sensor.receiver_band_hz is None and needed < FAR_OFF * stated:
         return stated
     return max(stated, needed)

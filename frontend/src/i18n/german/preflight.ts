@@ -135,6 +135,14 @@ export const preflight = {
     text: "Der Empfänger arbeitet. Die Pulse kommen so selten, dass eine Drehung an jedem Ort bis zu {turn_s} dauert.",
     remedy: "Weniger Pulse je Richtung verkürzen sie; darauf achten, dass die Batterie für zwei Drehungen reicht.",
   },
+  few_turns_on_a_battery: {
+    text:
+      "Eine Drehung dauert {turn_s}. Solange Wind und Fluggerät nicht bekannt sind, reicht auch ein voller Akku nicht sicher für " +
+      "{turns} davon mitten im Gebiet, und mit weniger kommt keine Suche aus.",
+    remedy:
+      "Weniger Sender oder ein Signal suchen, das öfter gesendet wird, weniger Pulse je Richtung verlangen, oder ein Fluggerät, das " +
+      "lange in der Luft bleibt, mit einer kleineren Reserve fliegen.",
+  },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
     remedy: "Prüfen, ob er angesteckt ist und kein anderes Programm ihn benutzt.",
