@@ -2932,7 +2932,8 @@ export interface components {
         /**
          * @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
          *     resume_refused: while it holds or a pilot flies it, why resuming would be refused now. alerts: open ones of a craft
-         *     that flies for no mission; a mission's alerts are its facts.
+         *     that flies for no mission; a mission's alerts are its facts. settling_samples: left out, since the receiver was
+         *     changing to other channels.
          */
         CraftStatusMessage: {
             craft_id: string;
@@ -2948,6 +2949,8 @@ export interface components {
             resume_refused: components["schemas"]["Reason"] | null;
             /** @default [] */
             alerts: components["schemas"]["CraftAlertMessage"][];
+            /** @default 0 */
+            settling_samples: number;
         };
         /** @description crossing_deg: the widest angle at which the place's line crosses that of a bearing. needed_deg: of a claim. */
         CrossesTooLittle: {
@@ -3441,7 +3444,7 @@ export interface components {
              */
             code: "fence_unknown_form";
         };
-        /** @description turns: that a full battery is taken to last for, of turn_s each, with the way there and back and the reserve. */
+        /** @description turns: of turn_s each, that a full battery is not taken to last for, with the ways and the reserve. */
         FewTurnsOnABattery: {
             turns: number;
             turn_s: number;
