@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening, channels_for
-from backend.search.turn_schedule import SLICES, SPARE, Round
+from backend.search.turn_schedule import MOST_TURNS, SLICES, SPARE, Round
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.readings import HeadingSample, PowerSample
 
@@ -29,7 +29,7 @@ async def turn_and_listen(
     await listening.hear(channels_for(one.emitters))
     tags = [emitter for emitter in one.emitters if emitter.kind == "pulsed" and emitter.emitter_id in wanted]
     began_s = ended_s = equipment.clock.now()
-    for _ in range(one.most if tags else 1):
+    for _ in range(MOST_TURNS if tags else 1):
         await equipment.vehicle.turn(one.rate_deg_s)
         ended_s = equipment.clock.now()
         await listening.heard_until(ended_s)

@@ -106,8 +106,8 @@ class TurnBeyondBattery:
     english: ClassVar[Words] = Words(
         "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not "
         "known. With {needed_percent} for the way home and a reserve of {reserve_percent} no battery is full enough.",
-        "Ask for one pulse a heading, look for fewer emitters or for a signal that is sent more often, or lower the "
-        "reserve of a craft that stays up for long.",
+        "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays "
+        "up for long.",
     )
 
 

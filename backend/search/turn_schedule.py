@@ -24,7 +24,8 @@ SPARE = 1.1
 """The turn is so much slower than the pulses just need: they do not come in step with the headings."""
 SLOWEST_DEG_S = 2.0
 MOST_TURNS = 3
-"""Of one group, however seldom its pulses come; one fewer where each heading is to hear one pulse and cannot."""
+"""Of one group, however seldom its pulses come. Bursts every 50 s leave eleven directions so; two turns leave seven,
+too few for a bearing, so that fewer pulses a heading make this no shorter."""
 CHANGE_S = 1.0
 """From the last of one group to the first sample of the next: opening, tuning and settling."""
 FAR_OFF = 2.0
@@ -34,12 +35,11 @@ FAR_OFF = 2.0
 @dataclass(frozen=True, slots=True)
 class Round:
     """All the way round for one group. emitters: those that are heard, wanted or not, in the specification's order.
-    times: so often, where pulses come too seldom for the slowest turn. most: no oftener, though headings stay deaf."""
+    times: so often, where pulses come too seldom for the slowest turn."""
 
     emitters: tuple[EmitterSpec, ...]
     rate_deg_s: float
     times: int = 1
-    most: int = MOST_TURNS
 
     @property
     def seconds(self) -> float:
@@ -79,8 +79,7 @@ def _round(sensor: SensorSpec, group: tuple[EmitterSpec, ...], wanted: Sequence[
     rate = min(sensor.turn_rate_deg_s, 360.0 / needed_s if needed_s else math.inf)
     rate = max(rate, min(SLOWEST_DEG_S, sensor.turn_rate_deg_s))
     times = math.ceil(needed_s * rate / 360.0 - 1e-6)
-    most = MOST_TURNS if times <= MOST_TURNS else min(1 + sensor.pulses_per_heading, MOST_TURNS)
-    return Round(group, rate, min(max(times, 1), most), most)
+    return Round(group, rate, min(max(times, 1), MOST_TURNS))
 
 
 def heard_at_once(emitters: Sequence[EmitterSpec], band_hz: float | None) -> tuple[tuple[EmitterSpec, ...], ...]:

@@ -1052,12 +1052,11 @@ export const reasonsEn: ReasonTable = {
   },
   turn_takes_long: {
     text: "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
-    remedy: "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
+    remedy: "Where they come every few seconds, fewer of them a heading make it shorter; see that the battery lasts for two turns.",
   },
   few_turns_on_a_battery: {
-    text: "A turn takes {turn_s}. As long as wind and craft are not known, a full battery is taken to last for {turns} of them in the middle of the area, and a search needs at least two.",
-    remedy:
-      "Look for fewer emitters or for a signal that is sent more often, ask for fewer pulses a heading, or fly a craft that stays up for long with a smaller reserve.",
+    text: "A turn takes {turn_s}. As long as wind and craft are not known, not even a full battery is sure to last for {turns} of them in the middle of the area, and no search does with fewer.",
+    remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
   },
   no_samples: {
     text: "The receiver delivers no samples.",
@@ -1540,9 +1539,8 @@ export const reasonsEn: ReasonTable = {
     remedy: "Return home and change the battery.",
   },
   turn_beyond_battery: {
-    text: "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not known. With {needed_percent} for the way home and a reserve of {reserve_percent}, not even a full one would do.",
-    remedy:
-      "Ask for one pulse a heading, look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
+    text: "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not known. With {needed_percent} for the way home and a reserve of {reserve_percent} no battery is full enough.",
+    remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
   },
   altitude_outside: {
     text: "{altitude_relative_m} above home is outside the allowed {lowest_relative_m} to {highest_relative_m}.",

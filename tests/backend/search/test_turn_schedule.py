@@ -7,7 +7,7 @@ from equipment import spec
 from hypothesis import given
 from hypothesis import strategies as st
 
-from backend.search.turn_schedule import CHANGE_S, MOST_TURNS, SLICES, SPARE, heard_at_once, turn_s, turn_schedule
+from backend.search.turn_schedule import CHANGE_S, SLICES, SPARE, heard_at_once, turn_s, turn_schedule
 from backend.spec import EmitterSpec, MissionSpec
 
 REACH_HZ = {"carrier": 3_200.0, "pulsed": 2_000.0}
@@ -87,14 +87,6 @@ def test_every_emitter_is_in_one_group_that_fits_and_no_fewer_groups_would_do(
         if one.frequency_hz - 2_000.0 > beyond:
             apart, beyond = apart + 1, one.frequency_hz + band_hz
     assert len(groups) >= apart
-
-
-def test_who_asks_for_one_pulse_a_heading_goes_round_once_less_for_bursts_that_are_seldom() -> None:
-    beacon = mission(emitter(0, 406.025e6, 50.0), stated_s=30.0)
-    one = beacon.sensor.model_copy(update={"pulses_per_heading": 1})
-    assert turn_s(beacon.model_copy(update={"sensor": one})) == 2 * 180.0
-    (tag,) = turn_schedule(mission(FOUR[0])).rounds
-    assert tag.most == MOST_TURNS, "headings that missed their pulses are turned to again as ever"
 
 
 def test_a_turn_takes_less_once_emitters_are_found() -> None:

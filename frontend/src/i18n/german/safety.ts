@@ -31,8 +31,8 @@ export const safety = {
       "Eine Drehung dauert {turn_s}; dafür werden {takes_percent} eines Akkus angesetzt, solange Wind und Fluggerät nicht bekannt sind. " +
       "Mit {needed_percent} für den Heimweg und einer Reserve von {reserve_percent} reicht auch ein voller nicht.",
     remedy:
-      "Einen Puls je Richtung verlangen, weniger Sender oder ein Signal suchen, das öfter gesendet wird, oder die Reserve eines " +
-      "Fluggeräts senken, das lange in der Luft bleibt.",
+      "Weniger Sender oder ein Signal suchen, das öfter gesendet wird, oder die Reserve eines Fluggeräts senken, das lange in der " +
+      "Luft bleibt.",
   },
   altitude_outside: {
     text: "{altitude_relative_m} über dem Startplatz liegt außerhalb der erlaubten {lowest_relative_m} bis {highest_relative_m}.",
