@@ -237,7 +237,8 @@ class CraftStatus:
     """What a craft does now, and the health of its parts. mission_id None: it flies for none; phase is not "ground"
     when it is in the air all the same. order None: nothing was ordered, or something else has come of it.
     resume_refused: why resuming would be refused now; None: it would not, or nothing waits to be resumed. alerts: of a
-    craft that flies for no mission; those of one that does are its mission's facts."""
+    craft that flies for no mission; those of one that does are its mission's facts. settling_samples: left out, since
+    the receiver was changing to other channels."""
 
     craft_id: str
     mission_id: str | None
@@ -249,6 +250,7 @@ class CraftStatus:
     order: OrderStatus | None = None
     resume_refused: Reason | None = None
     alerts: tuple[CraftAlert, ...] = ()
+    settling_samples: int = 0
 
 
 @dataclass(frozen=True, slots=True)

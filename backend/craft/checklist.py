@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Sequence
 
+from backend.craft.endurance import unknown
 from backend.craft.equipment import CraftEquipment
 from backend.craft.ground_check import ground_checks, knows_nothing
 from backend.craft.listening import Listening, channels_for, channels_of
 from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
 from backend.craft.return_altitude import least_return_altitude_m, return_altitude_check
-from backend.craft.safety import Situation, limits_of, start_vetoes
+from backend.craft.safety import Situation, lasts_for, limits_of, start_vetoes
 from backend.events import CheckFact
 from backend.ports import Grounds
 from backend.reasons import Reason, carried, checks
@@ -25,6 +26,8 @@ from backend.terrain import Terrain
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
 
 RECEIVER_WALL_S = 3.0
+FEWEST_TURNS = 2
+"""One place tells a direction and no distance."""
 
 
 def home_of(telemetry: Telemetry) -> tuple[Place | None, float | None]:
@@ -76,11 +79,16 @@ async def checklist(
     found += [sound] if returns is None else [returns, sound]
     if task is not None:
         found += await asyncio.to_thread(ground_checks, task)
-        found.append(await nets_check(equipment.vehicle, limits_of(task)))
-        vetoes = start_vetoes(limits_of(task), await recent(situation))
+        limits = limits_of(task)
+        found.append(await nets_check(equipment.vehicle, limits))
+        vetoes = start_vetoes(limits, await recent(situation))
         found += [_fact("safety", False, veto) for veto in vetoes]
         if not vetoes:
             found.append(_fact("safety", True, checks.StartAllowed()))
+            enough = await asyncio.to_thread(lasts_for, limits, unknown(), FEWEST_TURNS)
+            if limits.battery_telemetry and not enough:
+                few = checks.FewTurnsOnABattery(FEWEST_TURNS, limits.measurement_time_s)
+                found.append(_fact("battery", False, few, blocking=False))
     found.append(await _receiver(mission, equipment, listening))
     found.append(_pattern(mission, equipment))
     found += [] if antenna is None else [antenna]

@@ -19,7 +19,7 @@ from backend.craft.fly_home import fly_home
 from backend.craft.hands import Hands
 from backend.craft.listening import Listening, channels_for, channels_of
 from backend.craft.measuring import Measured
-from backend.craft.safety import Limits, battery_vetoes, limits_of, resume_vetoes
+from backend.craft.safety import Limits, limits_of, resume_vetoes, take_off_battery_vetoes
 from backend.craft.state import CraftState
 from backend.craft.under_way import UnderWay
 from backend.craft.watch.watch import Watch
@@ -110,7 +110,7 @@ class CraftRunner:
             case Resume():
                 found = resume_vetoes(telemetry)
                 if telemetry.in_air is False and not self._search().found:
-                    found += battery_vetoes(self.limits, self.watch.situation(), self.limits.measurement_time_s)
+                    found += take_off_battery_vetoes(self.work.limits_now, self.watch.situation())
                 return found
             case _:
                 return ()

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Literal
 
+import numpy as np
 from shapely import LineString, Point, unary_union
 from shapely.geometry.base import BaseGeometry
 
@@ -206,6 +207,25 @@ def battery_vetoes(
     return (safety.BatteryShort(telemetry.battery_percent, left, needed, limits.reserve_percent),)
 
 
+def take_off_battery_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
+    """Would a battery on the ground last for one turn and the way home? If not even a full one would, that is said:
+    another battery mends nothing then."""
+    found = battery_vetoes(limits, situation, limits.measurement_time_s)
+    match found:
+        case (safety.BatteryShort(charge, left, needed, reserve),) if charge - left + needed + reserve > 100.0:
+            return (safety.TurnBeyondBattery(limits.measurement_time_s, charge - left, needed, reserve),)
+        case _:
+            return found
+
+
+def lasts_for(limits: Limits, endurance: Endurance, turns: int) -> bool:
+    """Whether a full battery does, with the way to the middle of the area and home, and the reserve."""
+    east, north = (float(x) for x in np.vstack(limits.problem.area).mean(axis=0))
+    takes = endurance.way_percent([(east, north)], limits.speed_m_s, turns * limits.measurement_time_s)
+    home = battery_to_return_percent(limits, limits.frame.to_geo(east, north), endurance, limits.altitude_relative_m)
+    return takes + home + limits.reserve_percent <= 100.0
+
+
 def battery_stage(limits: Limits, situation: Situation) -> BatteryStage:
     """How low a battery is that no longer leaves the reserve. One whose charge is not known: it should return."""
     telemetry, endurance = situation.telemetry, situation.endurance
@@ -225,7 +245,7 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     telemetry = situation.telemetry
     by_hand = telemetry.armed is False
     found = [v for v in vehicle_vetoes(situation) if not (by_hand and isinstance(v, safety.PilotControls))]
-    found += battery_vetoes(limits, situation, limits.measurement_time_s)
+    found += take_off_battery_vetoes(limits, situation)
     if telemetry.in_air:
         found.append(safety.AlreadyInAir())
     found += _altitude_vetoes(limits, limits.altitude_relative_m)

@@ -23,10 +23,12 @@ from backend.events import PlanChosen
 from backend.reasons import Reason, carried, safety
 from backend.search.closed_by_ground import closed_by_ground
 from backend.search.importance import come_first
+from backend.search.localization import Localization
 from backend.search.planning import next_place, next_place_together, way_to
 from backend.search.sector import TurnPlan, expected_here, must_be_whole, planned_turn, whole_turn
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
+from backend.search.turn_schedule import turn_s
 from backend.spec import Place
 from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.vehicle import PositionLost
@@ -57,18 +59,24 @@ class Work:
     search: Callable[[], SearchState]
     keep_sweep: Callable[[Measured, int, int], None]
 
+    @property
+    def limits_now(self) -> Limits:
+        """As the mission allows, with the turn that is made for what is still looked for."""
+        sought = [emitter.emitter_id for emitter in self.search().sought]
+        return replace(self.limits, measurement_time_s=turn_s(self.task.mission, sought))
+
     async def take_off(self, effect: effects.TakeOff) -> inputs.CraftInput:
         """InTheAir, or WorkVetoed. Raises VehicleError."""
         vehicle, now = self.equipment.vehicle, await recent(self.situation)
         position = now.telemetry.position
         if now.telemetry.in_air and position is not None:
             altitude = self.task.altitude_at(position)
-            vetoes = place_vetoes(self.limits, now, position, altitude)
+            vetoes = place_vetoes(self.limits_now, now, position, altitude)
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
             await vehicle.goto(position, altitude, self.task.mission.flight.speed_m_s)
         else:
-            vetoes = start_vetoes(self.limits, now)
+            vetoes = start_vetoes(self.limits_now, now)
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
             await vehicle.take_off(self._take_off_height(effect.altitude_relative_m))
@@ -91,7 +99,7 @@ class Work:
         while way:
             facing = facing_deg if len(way) == 1 else None
             swinging = await asyncio.to_thread(self._swings, way[0], facing)
-            vetoes = place_vetoes(self.limits, await recent(self.situation), effect.place, altitude, way[:-1])
+            vetoes = place_vetoes(self.limits_now, await recent(self.situation), effect.place, altitude, way[:-1])
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
             if not levelled:
@@ -119,7 +127,7 @@ class Work:
         """SweepTaken, a rejected sweep too, or WorkVetoed. Raises HardwareError."""
         here = self.task.frame.to_enu(self._here())
         plan = await asyncio.to_thread(self._turn_at, here, effect.attempt)
-        vetoes = turn_vetoes(self.limits, await recent(self.situation))
+        vetoes = turn_vetoes(self.limits_now, await recent(self.situation))
         if vetoes:
             return inputs.WorkVetoed(vetoes)
         found = await measure(
@@ -199,23 +207,29 @@ class Work:
         sought = search.sought
         ranks = {emitter.emitter_id: search.rank(emitter.emitter_id) for emitter in sought}
         if len(sought) > 1 and self.task.mission.planner.method == "rollout":
-            wanted = [(self.task.together.about(search, e.emitter_id).without(closed), e.bearings) for e in sought]
+            wanted = [(self._about(search, e.emitter_id).without(closed), e.bearings) for e in sought]
             choice = next_place_together(
                 wanted, platform, number, effect.avoid, threads, craft_id, list(ranks.values())
             )
         else:
             emitter = next(iter(sought))
-            task = self.task.together.about(search, emitter.emitter_id).without(closed)
+            task = self._about(search, emitter.emitter_id).without(closed)
             belief = task.planning_belief(task.planner_bearings(emitter.bearings))
             choice = next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)
         return choice.model_copy(update={"first": come_first(ranks), "set_back": search.set_back})
+
+    def _about(self, search: SearchState, emitter_id: str) -> Localization:
+        """Of an emitter, with the turn that is made for what is still looked for."""
+        sought = [emitter.emitter_id for emitter in search.sought]
+        return self.task.together.about(search, emitter_id).turning_for(sought)
 
     def vetoes_against(self, place: Place, way: Sequence[tuple[float, float]] | None = None) -> tuple[Reason, ...]:
         """What safety has against flying to a place from where the vehicle is now. way: points in between (m ENU),
         None: straight, else around what may not be crossed."""
         end, now = self.task.frame.to_enu(place), self.situation()
         points = [*(way or ()), end]
-        straight = place_vetoes(self.limits, now, place, self._level_altitude(now, points), way or ())
+        limits = self.limits_now
+        straight = place_vetoes(limits, now, place, self._level_altitude(now, points), way or ())
         around = safety.WayLeavesFence | safety.WayCrossesNoFly
         if self.task.ground.terrain is not None:
             around |= safety.ClearanceShort | safety.TooHighAboveGround | safety.AltitudeOutside
@@ -225,7 +239,7 @@ class Work:
             found = self._way(end)
         except PlannerError:
             return straight
-        return place_vetoes(self.limits, now, place, self._level_altitude(now, found), found[:-1])
+        return place_vetoes(limits, now, place, self._level_altitude(now, found), found[:-1])
 
     def level_altitude(self, way: Sequence[tuple[float, float]]) -> float:
         """Metres AMSL at which a way (m ENU) is flown from where the vehicle is now."""

@@ -88,6 +88,7 @@ class Display:
             receiver=runner.listening.state,
             receiver_power_db=None if last is None else last.power_db,
             receiver_age_s=runner.listening.age_s,
+            settling_samples=runner.listening.settling_samples,
             battery_to_return_percent=needed,
         )
 

@@ -63,7 +63,8 @@ class Questions:
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
         emitters = search.sought if search.wanted else search.sought[:1]
-        wanted = [(task.together.about(search, one.emitter_id), one.bearings) for one in emitters]
+        names = [one.emitter_id for one in emitters]
+        wanted = [(task.together.about(search, one.emitter_id).turning_for(names), one.bearings) for one in emitters]
         ranks = [search.rank(one.emitter_id) for one in emitters]
         found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
         if runner is not None and found.mean_s is not None:

@@ -48,7 +48,23 @@ class TurnTakesLong:
     code: Literal["turn_takes_long"] = "turn_takes_long"
     english: ClassVar[Words] = Words(
         "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
-        "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
+        "Where they come every few seconds, fewer of them a heading make it shorter; see that the battery lasts for "
+        "two turns.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FewTurnsOnABattery:
+    """turns: of turn_s each, that a full battery is not taken to last for, with the ways and the reserve."""
+
+    turns: int
+    turn_s: float
+    code: Literal["few_turns_on_a_battery"] = "few_turns_on_a_battery"
+    english: ClassVar[Words] = Words(
+        "A turn takes {turn_s}. As long as wind and craft are not known, not even a full battery is sure to last for "
+        "{turns} of them in the middle of the area, and no search does with fewer.",
+        "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays "
+        "up for long.",
     )
 
 
@@ -166,6 +182,7 @@ CheckReason = (
     | ReceiverDelivers
     | ReceiverTakesTurns
     | TurnTakesLong
+    | FewTurnsOnABattery
     | NoSamples
     | TagUnheard
     | PatternInUse

@@ -95,6 +95,23 @@ class BatteryShort:
 
 
 @dataclass(frozen=True, slots=True)
+class TurnBeyondBattery:
+    """turn_s: of one turn, with all its rounds. takes_percent: for it; needed_percent: for the way home."""
+
+    turn_s: float
+    takes_percent: float
+    needed_percent: float
+    reserve_percent: float
+    code: Literal["turn_beyond_battery"] = "turn_beyond_battery"
+    english: ClassVar[Words] = Words(
+        "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not "
+        "known. With {needed_percent} for the way home and a reserve of {reserve_percent} no battery is full enough.",
+        "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays "
+        "up for long.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class AltitudeOutside:
     """All relative to home."""
 
@@ -238,6 +255,7 @@ SafetyReason = (
     | BatteryUnknown
     | BatterySilent
     | BatteryShort
+    | TurnBeyondBattery
     | AltitudeOutside
     | TooFarFromHome
     | AlreadyInAir

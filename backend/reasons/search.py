@@ -302,6 +302,22 @@ class FrequencyShared:
 
 
 @dataclass(frozen=True, slots=True)
+class FrequenciesTooNear:
+    """first_hz < second_hz: of two emitters. needed_hz: as far apart would do."""
+
+    first_hz: float
+    second_hz: float
+    needed_hz: float
+    code: Literal["frequencies_too_near"] = "frequencies_too_near"
+    english: ClassVar[Words] = Words(
+        "Emitters at {first_hz} and {second_hz} are so near to each other that the receiver hears each of them on both "
+        "channels.",
+        "From {needed_hz} on they are told apart. Give tags nearer than that one frequency and their periods, and look "
+        "for other emitters one at a time.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class TooManyRhythms:
     frequency_hz: float
     most: int
@@ -358,6 +374,7 @@ SearchReason = (
     | UnclearForLong
     | FirstForLong
     | FrequencyShared
+    | FrequenciesTooNear
     | TooManyRhythms
     | RhythmsTooAlike
 )

@@ -48,7 +48,8 @@ class Localization:
     """The task of localizing one emitter, in the planner's words. The frame's origin is the home at the start.
 
     beside: adds to a belief by this emitter's own bearings what others tell of their source's errors
-    (backend.search.together); None: nothing. stretches: of way on which it was heard.
+    (backend.search.together); None: nothing. stretches: of way on which it was heard. fewer_turned_for: whether turns
+    are made for fewer emitters than the mission has, and take another time than those for all.
     """
 
     mission: MissionSpec
@@ -59,6 +60,7 @@ class Localization:
     rule: LocalizationRule
     beside: Callable[[GridBelief], GridBelief] | None = None
     stretches: tuple[Stretch, ...] = ()
+    fewer_turned_for: bool = False
     _folds: dict[tuple[Bearing, ...], GridBelief] = field(
         default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
     )
@@ -109,6 +111,13 @@ class Localization:
             return self
         problem = replace(self.problem, no_fly=(*self.problem.no_fly, *area.region(closed)))
         return replace(self, problem=problem)
+
+    def turning_for(self, wanted: Sequence[str]) -> Localization:
+        """The same with turns that are made for these emitters only (by id), since the others are found."""
+        turn = turn_s(self.mission, wanted)
+        if turn == turn_s(self.mission):
+            return self
+        return replace(self, problem=replace(self.problem, measurement_time=turn), fewer_turned_for=True)
 
     def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
         """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""

@@ -143,9 +143,15 @@ def decide(
 
 def to_plan(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
     """What is foreseen, and what the next bearing must cross where a claim waits for nothing but that."""
-    problem = foreseen_to_plan(task.problem, measured, belief)
+    problem = foreseen_for(task, measured, belief)
     crossing = missing_crossing(problem, task.rule, task.planner_bearings(measured), belief)
     return replace(problem, crossing=crossing)
+
+
+def foreseen_for(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
+    """As `foreseen_to_plan`. What turns took that were made for more emitters says nothing of those to come."""
+    found = foreseen_to_plan(task.problem, measured, belief)
+    return replace(found, measurement_time=task.problem.measurement_time) if task.fewer_turned_for else found
 
 
 def foreseen_to_plan(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
@@ -290,7 +296,7 @@ def cost_of(
     """Time until localized when the next bearing is taken at `place` (m ENU)."""
     try:
         found = expected_time_from(
-            foreseen_to_plan(task.problem, measured, belief),
+            foreseen_for(task, measured, belief),
             belief,
             task.planner_bearings(measured),
             place,

@@ -24,7 +24,8 @@ SPARE = 1.1
 """The turn is this much slower than the pulses need at least, because they do not come in step with the headings."""
 SLOWEST_DEG_S = 2.0
 MOST_TURNS = 3
-"""Of one group, however rarely its pulses come."""
+"""Of one group, however rarely its pulses come. Bursts every 50 s leave eleven directions so; two turns leave seven,
+too few for a bearing, so that fewer pulses a heading make this no shorter."""
 CHANGE_S = 1.0
 """From the last of one group to the first sample of the next: opening, tuning and settling."""
 FAR_OFF = 2.0
@@ -95,11 +96,12 @@ def heard_at_once(emitters: Sequence[EmitterSpec], band_hz: float | None) -> tup
     return tuple(tuple(sorted(group, key=emitters.index)) for group in groups)
 
 
-def turn_s(mission: MissionSpec) -> float:
-    """What a turn for all emitters takes, from the order to the bearings: as specified, or as long as it has to where
-    the receiver hears them in groups, or a tag's pulses come so seldom that the specified time is off by far."""
+def turn_s(mission: MissionSpec, wanted: Collection[str] = ()) -> float:
+    """What a turn takes, from the order to the bearings: as specified, or as long as it has to where the receiver hears
+    the emitters in groups, or a tag's pulses come so seldom that the specified time is off by far. wanted: those still
+    looked for, by id; none: all."""
     stated = mission.sensor.measurement_time_s
-    needed = turn_schedule(mission).seconds
+    needed = turn_schedule(mission, wanted or None).seconds
     if mission.sensor.receiver_band_hz is None and needed < FAR_OFF * stated:
         return stated
     return max(stated, needed)

@@ -89,12 +89,15 @@ def last_bearing(screen: Screen) -> None:
 
 
 def sensor_opened(screen: Screen) -> None:
-    """What lies behind "more": the antenna's offset, the error that bearings share, what is heard on the way."""
+    """What lies behind "more": the antenna's offset, the error that bearings share, what is heard on the way, and
+    turning only where that told little."""
     suggested(screen)
     offset = screen.part("field-sensor-bearing_offset_deg")
     screen.page.locator("details.more").filter(has=offset).locator("summary").click()
     screen.part("field-sensor-listen_on_the_way").check()
-    screen.part("field-sensor-swing_on_the_way").evaluate("(field) => field.scrollIntoView({ block: 'center' })")
+    screen.part("field-sensor-swing_on_the_way").check()
+    screen.part("field-sensor-never_stop").check()
+    screen.part("field-sensor-never_stop").evaluate("(field) => field.scrollIntoView({ block: 'center' })")
 
 
 def suggested(screen: Screen) -> None:
@@ -105,10 +108,12 @@ def suggested(screen: Screen) -> None:
 
 
 def tags_typed(screen: Screen) -> None:
+    """Two of them at one frequency, one before all others, heard by a narrow receiver."""
     suggested(screen)
     screen.part("field-emitters-0-kind").select_option("pulsed")
-    screen.part("emitter-list").fill(TAGS)
+    screen.part("emitter-list").fill(f"{TAGS}\n150.1/1.05 the first one's cub !1")
     screen.part("emitter-list").blur()
+    screen.part("field-receiver-band").select_option("25")
 
 
 def moving(screen: Screen) -> None:

@@ -12,9 +12,12 @@ from pathlib import Path
 
 import pytest
 from conftest import serving
+from legible import serious
 from playwright.sync_api import Page, Position, expect
 from screen import AIM_MAP, OpenScreen, Screen
 from served import Server
+
+from tests.browser.sweep import faults
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
 
@@ -121,6 +124,7 @@ def test_the_tag_that_is_set_first_is_flown_for_and_found_first_and_the_order_ch
     second = open_still[-1]
     screen.part("order").focus()
     screen.page.keyboard.press("Enter")
+    assert_legible(screen)
     screen.part(f"first-{second}").focus()
     screen.page.keyboard.press("Enter")
     expect(screen.part(f"place-{second}")).to_have_text("first")
@@ -138,6 +142,20 @@ def test_the_tag_that_is_set_first_is_flown_for_and_found_first_and_the_order_ch
     expect(screen.part("report")).to_have_attribute("data-ready", "true")
     expect(screen.part("report-order").nth(6)).to_contain_text("no. 1")
     expect(screen.part("report-order").nth(6)).to_contain_text("after the start")
+
+
+def assert_legible(screen: Screen) -> None:
+    """On three devices, in both themes; the screen is left as it was."""
+    usual = screen.page.viewport_size
+    assert usual is not None
+    assert serious(screen.page) == []
+    for width, height in ((390, 844), (820, 1180), (1280, 800)):
+        screen.page.set_viewport_size({"width": width, "height": height})
+        screen.page.wait_for_timeout(300)
+        assert faults(screen.page) == [], f"{width} pixels wide"
+        bar = screen.part("state-words").bounding_box()
+        assert bar is None or bar["width"] > 60.0, "what it does has room for its words"
+    screen.page.set_viewport_size(usual)
 
 
 def found_ids(server: Server, screen: Screen) -> list[str]:

@@ -449,6 +449,7 @@ export const de: Record<MessageKey, string> = {
 
   "emitters.count": "{found} von {all} Sendern gefunden",
   "emitters.mhz": "{mhz} MHz",
+  "emitters.mhzEvery": "{mhz} MHz, alle {period} s",
   "emitters.found": "gefunden {length}",
   "emitters.looking": "{length}",
   "emitters.unclear": "Peilungen widersprechen sich",
@@ -942,6 +943,7 @@ export const de: Record<MessageKey, string> = {
   "instruments.climb": "Steigen",
   "instruments.heading": "Kurs (rechtweisend)",
   "instruments.power": "Empfangsleistung",
+  "instruments.settling": "Beim Kanalwechsel ausgelassen",
   "instruments.viewers": "Konsolen, die zusehen",
   "instruments.database": "Journal",
   "instruments.database.ok": "hält Schritt",

@@ -316,6 +316,7 @@ export const en = {
 
   "emitters.count": "{found} of {all} emitters found",
   "emitters.mhz": "{mhz} MHz",
+  "emitters.mhzEvery": "{mhz} MHz, every {period} s",
   "emitters.found": "found {length}",
   "emitters.looking": "{length}",
   "emitters.unclear": "bearings disagree",
@@ -518,6 +519,7 @@ export const en = {
   "instruments.climb": "Climb",
   "instruments.heading": "Heading (true)",
   "instruments.power": "Received power",
+  "instruments.settling": "Left out while changing channels",
   "instruments.viewers": "Consoles watching",
   "instruments.database": "Journal",
   "instruments.database.ok": "keeping up",

@@ -1052,7 +1052,11 @@ export const reasonsEn: ReasonTable = {
   },
   turn_takes_long: {
     text: "The receiver works. The pulses come so seldom that a turn takes up to {turn_s} at every place.",
-    remedy: "Fewer pulses a heading make it shorter; see that the battery lasts for two turns.",
+    remedy: "Where they come every few seconds, fewer of them a heading make it shorter; see that the battery lasts for two turns.",
+  },
+  few_turns_on_a_battery: {
+    text: "A turn takes {turn_s}. As long as wind and craft are not known, not even a full battery is sure to last for {turns} of them in the middle of the area, and no search does with fewer.",
+    remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
   },
   no_samples: {
     text: "The receiver delivers no samples.",
@@ -1534,6 +1538,10 @@ export const reasonsEn: ReasonTable = {
     text: "Battery at {charge_percent}: the way home would begin at {left_percent} and takes {needed_percent}; the reserve is {reserve_percent}.",
     remedy: "Return home and change the battery.",
   },
+  turn_beyond_battery: {
+    text: "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not known. With {needed_percent} for the way home and a reserve of {reserve_percent} no battery is full enough.",
+    remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
+  },
   altitude_outside: {
     text: "{altitude_relative_m} above home is outside the allowed {lowest_relative_m} to {highest_relative_m}.",
     remedy: "Change the mission's altitude or its band.",
@@ -1693,6 +1701,11 @@ export const reasonsEn: ReasonTable = {
   frequency_shared: {
     text: "Two emitters send at {frequency_hz}, and not both are tags: no receiver can tell them apart.",
     remedy: "Look for one of them at a time; tags at one frequency are told apart by their periods.",
+  },
+  frequencies_too_near: {
+    text: "Emitters at {first_hz} and {second_hz} are so near to each other that the receiver hears each of them on both channels.",
+    remedy:
+      "From {needed_hz} on they are told apart. Give tags nearer than that one frequency and their periods, and look for other emitters one at a time.",
   },
   too_many_rhythms: {
     text: "More than {most} tags send at {frequency_hz}: too many of their pulses fall together.",

@@ -17,7 +17,14 @@ const press = (name: string) => act(() => part(name)!.click());
 function show(...events: MissionEvent[]): void {
   const spec = someSpec();
   const [one] = spec.emitters;
-  const emitters = ["a", "b", "c"].map((id, i) => ({ ...one!, emitter_id: id, label: `hare ${i + 1}`, priority: i === 1 ? 1 : null }));
+  const emitters = ["a", "b", "c"].map((id, i) => ({
+    ...one!,
+    emitter_id: id,
+    label: `hare ${i + 1}`,
+    priority: i === 1 ? 1 : null,
+    frequency_hz: i === 2 ? 150.2e6 : 150.1e6,
+    pulse_period_s: 1.3 - 0.25 * i,
+  }));
   const all = record({ kind: "mission_drafted", spec: { ...spec, emitters } }, started(), ...events);
   live.value = { ...live.value, mission: missionAt(all, Number.POSITIVE_INFINITY), events: all };
   act(() => render(<EmitterList />, document.body));
@@ -48,6 +55,13 @@ it("puts what comes first at the top, and lets no row move while the order is be
   expect(order()).toEqual(["emitter-b", "emitter-a", "emitter-c"]);
   press("order");
   expect(order()).toEqual(["emitter-a", "emitter-b", "emitter-c"]);
+});
+
+it("tells tags at one frequency apart by their periods", () => {
+  show();
+  expect(part("emitter-a")?.textContent).toContain("150.1 MHz, every 1.3 s");
+  expect(part("emitter-b")?.textContent).toContain("150.1 MHz, every 1.05 s");
+  expect(part("emitter-c")?.textContent).not.toContain("every");
 });
 
 it("marks the one that stands back", () => {

@@ -13,6 +13,7 @@ import { settings } from "../state/settings";
 import { mission, shownTimeMs } from "../state/shown";
 import { remainingTimes } from "../state/timeLeft";
 import { formatDuration, formatLength } from "../units/quantities";
+import type { EmitterSpec } from "../wire";
 import { OrderButtons } from "./OrderButtons";
 import { PlaceInOrder } from "./PlaceInOrder";
 import { ProblemNote } from "./ProblemNote";
@@ -25,6 +26,14 @@ function stateWords(emitter: EmitterState | undefined): string {
   const length = fact.estimate ? `±${formatLength(fact.estimate.expected_rmse_m, settings.value.units)}` : "";
   if (fact.localized) return t("emitters.found", { length });
   return length ? t("emitters.looking", { length }) : t("emitters.unclear");
+}
+
+/** Its frequency, and its period where that alone tells it from another tag. */
+function signalWords(emitters: readonly EmitterSpec[], index: number): string {
+  const { frequency_hz, pulse_period_s } = emitters[index]!;
+  const mhz = Number((frequency_hz / 1e6).toFixed(4));
+  const isShared = emitters.some((other, i) => i !== index && other.frequency_hz === frequency_hz);
+  return isShared ? t("emitters.mhzEvery", { mhz, period: String(pulse_period_s) }) : t("emitters.mhz", { mhz });
 }
 
 export function EmitterList() {
@@ -75,7 +84,7 @@ export function EmitterList() {
                     {emitterName(emitters, id)}
                     <PlaceInOrder emitters={emitters} id={id} standsBack={back.has(id)} />
                   </span>
-                  <small>{t("emitters.mhz", { mhz: Number((emitters[index]!.frequency_hz / 1e6).toFixed(4)) })}</small>
+                  <small>{signalWords(emitters, index)}</small>
                 </span>
                 <span class="emitter-state">
                   {stateWords(states.get(id))}

@@ -55,6 +55,9 @@ function Values() {
       value: craft?.value.receiver_power_db == null ? null : `${formatNumber(craft.value.receiver_power_db, 1)} dB`,
       age: heard,
     },
+    ...(craft?.value.settling_samples
+      ? [{ label: "instruments.settling" as const, value: String(craft.value.settling_samples), age: ageS(0, craft.atMs, now) }]
+      : []),
     { label: "instruments.viewers", value: status ? String(status.value.viewers) : null, age: ageS(0, status?.atMs ?? null, now) },
     {
       label: "instruments.database",

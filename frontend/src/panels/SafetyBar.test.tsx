@@ -41,6 +41,7 @@ const craftStatus = (changes: Partial<CraftStatus>) =>
         order: null,
         resume_refused: null,
         alerts: [],
+        settling_samples: 0,
         ...changes,
       },
     ],

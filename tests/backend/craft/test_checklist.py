@@ -225,3 +225,14 @@ async def test_the_autopilots_own_return_clears_the_ground_between_the_area_and_
 @pytest.mark.parametrize("found", [None, terrain(level()), terrain(hill(0.0, 300.0, 60.0, wide_m=120.0))])
 async def test_where_the_ground_only_rises_away_from_home_any_return_altitude_will_do(found: Terrain | None) -> None:
     assert (await return_line(found, 0.0)).ok
+
+
+async def test_turns_that_no_battery_lasts_for_twice_are_a_caution_and_those_it_cannot_make_once_block() -> None:
+    tag = EmitterSpec(kind="pulsed", pulse_period_s=7.0)
+    seldom = await checked(Stage(), spec((tag,)))
+    assert isinstance(seldom["battery"].reason, checks.FewTurnsOnABattery)
+    assert (seldom["battery"].ok, seldom["battery"].blocking, seldom["safety"].ok) == (False, False, True)
+    beacon = tag.model_copy(update={"pulse_period_s": 50.0})
+    never = await checked(Stage(), spec((beacon,)))
+    assert isinstance(never["safety"].reason, safety.TurnBeyondBattery)
+    assert never["safety"].blocking

@@ -12,11 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import box
 
-from backend.craft.endurance import LEG_S, landing_s
+from backend.craft.endurance import LEG_S, landing_s, unknown
 from backend.craft.safety import (
     Situation,
     battery_stage,
     battery_to_return_percent,
+    lasts_for,
     place_vetoes,
     resume_vetoes,
     return_vetoes,
@@ -269,3 +270,22 @@ def test_above_home_a_battery_is_never_so_low_that_it_lands_elsewhere() -> None:
 def test_without_terrain_the_band_alone_holds() -> None:
     low = replace(LIMITS, flight=FlightSpec(altitude_relative_m=12.0))
     assert kinds(place_vetoes(low, situation(), FRAME.to_geo(50, 100), 112.0)) == []
+
+
+def test_a_turn_that_no_battery_lasts_for_is_refused_in_its_own_words() -> None:
+    """Another battery mends nothing then."""
+    nine_minutes = replace(LIMITS, measurement_time_s=540.0)
+    (veto,) = start_vetoes(nine_minutes, situation(in_air=False, battery_percent=100.0))
+    assert isinstance(veto, safety.TurnBeyondBattery)
+    assert veto.turn_s == 540.0
+    assert veto.takes_percent + veto.needed_percent + veto.reserve_percent > 100.0
+    assert kinds(start_vetoes(LIMITS, situation(in_air=False, battery_percent=26.0))) == [safety.BatteryShort]
+
+
+def test_a_battery_lasts_for_turns_that_fit_beside_the_ways_and_the_reserve() -> None:
+    calm, minute = still_air(0.05), replace(LIMITS, measurement_time_s=60.0)
+    assert lasts_for(minute, calm, 18)
+    assert not lasts_for(minute, calm, 26), "25 of 3 % each, and neither way nor reserve"
+    assert not lasts_for(replace(minute, reserve_percent=90.0), calm, 2)
+    assert not lasts_for(replace(LIMITS, measurement_time_s=540.0), unknown(), 2), "a beacon's bursts"
+    assert lasts_for(replace(LIMITS, measurement_time_s=46.0), unknown(), 2), "a tag's pulses"

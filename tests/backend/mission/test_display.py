@@ -35,11 +35,15 @@ async def test_the_alerts_of_a_craft_that_flies_for_no_mission_are_in_the_status
 
 async def test_the_status_says_what_the_craft_of_the_mission_does(stage: Stage) -> None:
     mission_id = await stuck(stage)
+    running = stage.room.flights.running(mission_id)
+    assert running is not None
+    running.crafts[FIRST_CRAFT].listening.settling_samples = 7
     status = stage.room.display.status()
     assert (status.mission_id, status.phase) == (mission_id, "flying")
     (craft,) = status.crafts
     assert (craft.craft_id, craft.mission_id, craft.phase, craft.receiver) == (FIRST_CRAFT, mission_id, "flying", "ok")
     assert craft.receiver_power_db == -60.0
+    assert CraftStatusMessage.model_validate(craft, from_attributes=True).settling_samples == 7
     assert craft.battery_to_return_percent is not None
     assert craft.battery_to_return_percent > 0.0
 

@@ -12,8 +12,17 @@ from hypothesis.extra.numpy import arrays
 from backend.events import PersonSource
 from backend.search.localization import Localization, localization
 from backend.search.planner_bearings import source_name
-from backend.search.planning import cost_of, foreseen, in_nine_of_ten, next_place, next_place_together, way_to
-from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon
+from backend.search.planning import (
+    cost_of,
+    foreseen,
+    foreseen_for,
+    in_nine_of_ten,
+    next_place,
+    next_place_together,
+    way_to,
+)
+from backend.search.turn_schedule import turn_s
+from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon, SensorSpec
 from hardware.readings import Place
 from planner.policy.actions import SAME_PLACE_M
 
@@ -162,3 +171,20 @@ def test_the_time_in_nine_of_ten_holds_for_nine_of_ten_and_is_never_below_the_me
 def test_a_few_lost_searches_do_not_put_the_mean_above_the_time_in_nine_of_ten() -> None:
     assert in_nine_of_ten(np.array([60.0] * 19 + [3000.0])) == 207.0
     assert in_nine_of_ten(np.array([])) is None
+
+
+def test_turns_to_come_take_as_long_as_those_still_looked_for_ask() -> None:
+    """A narrow receiver goes round once for each group; what is found is not turned for any more."""
+    tags = [
+        EmitterSpec(emitter_id=f"tag-{k}", frequency_hz=150e6 + 1e5 * k, kind="pulsed", label=f"tag {k}")
+        for k in range(4)
+    ]
+    narrow = task(emitters=tags, sensor=SensorSpec(receiver_band_hz=25e3, measurement_time_s=45.0))
+    flown = towards(0.0, -20.0, (200.0, 80.0)).model_copy(update={"measurement_time_s": 200.0})
+    all_s, one_s = (turn_s(narrow.mission, wanted) for wanted in ((), ["tag-3"]))
+    assert one_s < all_s / 3
+    last = narrow.turning_for(["tag-3"])
+    belief = last.planning_belief(last.planner_bearings([flown]))
+    assert foreseen_for(last, [flown], belief).measurement_time == one_s
+    still_all = narrow.turning_for([tag.emitter_id for tag in tags])
+    assert foreseen_for(still_all, [flown], belief).measurement_time == (all_s + 200.0) / 2.0

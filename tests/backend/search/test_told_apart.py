@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from refusals import refusing
 
-from backend.reasons.search import FrequencyShared, RhythmsTooAlike, TooManyRhythms
+from backend.reasons.search import FrequenciesTooNear, FrequencyShared, RhythmsTooAlike, TooManyRhythms
 from backend.search.errors import MissionInputError
 from backend.search.told_apart import MOST_TAGS, check_told_apart
 from backend.spec import EmitterSpec
@@ -49,3 +49,21 @@ def test_too_many_tags_at_one_frequency_are_refused() -> None:
     check_told_apart(tags[:MOST_TAGS])
     with refusing(TooManyRhythms(150e6, MOST_TAGS), MissionInputError):
         check_told_apart(tags)
+
+
+@pytest.mark.parametrize("apart_hz", [1.0, 100.0, 1_999.0])
+def test_frequencies_that_one_channel_hears_together_are_refused(apart_hz: float) -> None:
+    """Each would be given the louder one's pulses."""
+    for pair in ([tag(1.3), tag(1.3, 150e6 + apart_hz)], [tag(1.05, 150e6 + apart_hz), tag(1.3)]):
+        with refusing(FrequenciesTooNear(150e6, 150e6 + apart_hz, 2_000.0), MissionInputError):
+            check_told_apart(pair)
+    check_told_apart([tag(1.3), tag(1.3, 150.002e6)])
+
+
+def test_a_carrier_is_searched_for_further_than_a_tag() -> None:
+    carriers = [EmitterSpec(frequency_hz=868e6), EmitterSpec(frequency_hz=868.0025e6)]
+    with refusing(FrequenciesTooNear(868e6, 868.0025e6, 3_000.0), MissionInputError):
+        check_told_apart(carriers)
+    with refusing(FrequenciesTooNear(150e6, 150.0025e6, 3_000.0), MissionInputError):
+        check_told_apart([tag(1.3), EmitterSpec(frequency_hz=150.0025e6)])
+    check_told_apart([EmitterSpec(frequency_hz=868e6), EmitterSpec(frequency_hz=868.003e6)])

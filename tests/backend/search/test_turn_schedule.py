@@ -87,3 +87,12 @@ def test_every_emitter_is_in_one_group_that_fits_and_no_fewer_groups_would_do(
         if one.frequency_hz - 2_000.0 > beyond:
             apart, beyond = apart + 1, one.frequency_hz + band_hz
     assert len(groups) >= apart
+
+
+def test_a_turn_takes_less_once_emitters_are_found() -> None:
+    narrow = mission(*FOUR, band_hz=25e3)
+    assert turn_s(narrow, ["e-1"]) == turn_s(mission(*FOUR[:1], band_hz=25e3)) < turn_s(narrow) / 3
+    assert turn_s(narrow, []) == turn_s(narrow), "nobody is looked for by name: all are"
+    beacon = mission(emitter(0, 406.025e6, 50.0), emitter(1, 406.1e6), stated_s=30.0)
+    assert turn_s(beacon, ["e-1"]) == 30.0
+    assert turn_s(mission(*FOUR), ["e-1"]) == turn_s(mission(*FOUR)), "all are heard at once"

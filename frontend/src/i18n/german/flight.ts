@@ -105,6 +105,12 @@ export const flight = {
     text: "Zwei Sender senden auf {frequency_hz}, und nicht beide mit Pulsen: Kein Empfänger kann sie unterscheiden.",
     remedy: "Einen nach dem anderen suchen; Tiersender auf einer Frequenz unterscheidet ihre Periode.",
   },
+  frequencies_too_near: {
+    text: "Sender auf {first_hz} und {second_hz} liegen so nah beieinander, dass der Empfänger jeden auf beiden Kanälen hört.",
+    remedy:
+      "Ab {needed_hz} Abstand sind sie zu unterscheiden. Tiersendern, die näher beieinander liegen, dieselbe Frequenz und ihre " +
+      "Perioden geben, andere Sender einen nach dem anderen suchen.",
+  },
   too_many_rhythms: {
     text: "Mehr als {most} Tiersender senden auf {frequency_hz}: Zu viele ihrer Pulse fallen zusammen.",
     remedy: "Höchstens {most} zugleich suchen.",

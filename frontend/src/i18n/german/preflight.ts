@@ -133,7 +133,16 @@ export const preflight = {
   },
   turn_takes_long: {
     text: "Der Empfänger arbeitet. Die Pulse kommen so selten, dass eine Drehung an jedem Ort bis zu {turn_s} dauert.",
-    remedy: "Weniger Pulse je Richtung verkürzen sie; darauf achten, dass die Batterie für zwei Drehungen reicht.",
+    remedy:
+      "Wo sie alle paar Sekunden kommen, verkürzen weniger davon je Richtung sie; darauf achten, dass die Batterie für zwei Drehungen reicht.",
+  },
+  few_turns_on_a_battery: {
+    text:
+      "Eine Drehung dauert {turn_s}. Solange Wind und Fluggerät nicht bekannt sind, reicht auch ein voller Akku nicht sicher für " +
+      "{turns} davon mitten im Gebiet, und mit weniger kommt keine Suche aus.",
+    remedy:
+      "Weniger Sender oder ein Signal suchen, das öfter gesendet wird, oder die Reserve eines Fluggeräts senken, das lange in der " +
+      "Luft bleibt.",
   },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",

@@ -26,6 +26,14 @@ export const safety = {
     text: "Akku {charge_percent}: Der Heimweg begänne bei {left_percent} und braucht {needed_percent}; die Reserve ist {reserve_percent}.",
     remedy: "Heimkehren und den Akku wechseln.",
   },
+  turn_beyond_battery: {
+    text:
+      "Eine Drehung dauert {turn_s}; dafür werden {takes_percent} eines Akkus angesetzt, solange Wind und Fluggerät nicht bekannt sind. " +
+      "Mit {needed_percent} für den Heimweg und einer Reserve von {reserve_percent} reicht auch ein voller nicht.",
+    remedy:
+      "Weniger Sender oder ein Signal suchen, das öfter gesendet wird, oder die Reserve eines Fluggeräts senken, das lange in der " +
+      "Luft bleibt.",
+  },
   altitude_outside: {
     text: "{altitude_relative_m} über dem Startplatz liegt außerhalb der erlaubten {lowest_relative_m} bis {highest_relative_m}.",
     remedy: "Die Höhe der Mission oder ihren Bereich ändern.",
