@@ -22,6 +22,7 @@ from backend.search.errors import MissionInputError
 from backend.search.planner_bearings import own_sigma_deg, planner_bearing, source_name
 from backend.search.problem import prior_belief_of, problem_of, rule_of
 from backend.search.silences import silences_of
+from backend.search.turn_schedule import turn_s
 from backend.search.way_facts import stretches_of
 from backend.spec import MissionSpec
 from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
