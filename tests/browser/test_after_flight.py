@@ -24,6 +24,7 @@ from backend.store.entries import EventRow, to_records
 from backend.store.upgrade import FIRST_FORM
 from backend.wire.bundle import bundle
 from hardware.frame import LocalFrame
+from tests.browser.by_thumb import EVERY_SIZE, card, touched
 from tests.browser.stock import search_of_tags
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
@@ -106,6 +107,8 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     taken_over = {name: sensor[name] for name in ("sigma_deg", "outlier_probability")}
     assert taken_over == {name: suggested[name] for name in taken_over}
     assert taken_over["outlier_probability"] == 0.17
+    moved = server.get(f"/api/missions/{screen.mission_id}")["spec"]["planner"]["motion"]
+    assert moved == {"kind": "linear_constant"} | {name: suggested[name] for name in ("speed_m_s", "constant_s")}
 
     screen.go("#/new")
     part("profile").select_option("quad with yagi")
@@ -115,6 +118,23 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     expect(part("profile-back")).to_have_count(0)
     part("profile").select_option("quad with yagi")
     expect(offset).to_have_value("0")
+
+
+def test_a_season_is_told_by_vehicle_and_by_antenna(server: Server, open_screen: OpenScreen) -> None:
+    def of_craft(recorded: list[Recorded], craft: str) -> list[Recorded]:
+        return [Recorded.model_validate_json(r.model_dump_json().replace('"craft-1"', f'"{craft}"')) for r in recorded]
+
+    for number, (craft, off_deg) in enumerate((("owl-finder", 0.0), ("owl-finder", 0.0), ("fox-finder", 40.0))):
+        bring_in(server, of_craft(checked(f"of-{craft}-{number}", off_deg), craft))
+    screen = open_screen(server, "#/calibration")
+    two_sigma = screen.part("reliability").nth(1)
+    for craft, bearings, held in (("owl-finder", "6", "100 %"), ("fox-finder", "3", "0 %")):
+        screen.page.get_by_label("Vehicle").select_option(craft)
+        expect(two_sigma).to_have_attribute("data-of", bearings)
+        expect(two_sigma.locator("td").first).to_have_text(held)
+    (antenna,) = server.get("/api/calibration?craft=fox-finder")["antennas"]
+    screen.page.get_by_label("Antenna").select_option(antenna)
+    expect(two_sigma).to_have_attribute("data-of", "3")
 
 
 def how_sharp(server: Server, screen: Screen) -> None:
@@ -336,12 +356,13 @@ def test_bearings_that_were_taken_elsewhere_are_brought_in_from_a_file(
     assert len([e for e in server.events(mission_id) if e["kind"] == "bearing_measured"]) == 5
 
 
+@pytest.mark.parametrize("size", EVERY_SIZE)
 def test_our_own_bearing_files_are_brought_in_on_the_page(
-    server: Server, open_screen: OpenScreen, tmp_path: Path
+    server: Server, open_screen: OpenScreen, size: str, tmp_path: Path
 ) -> None:
     """The file that a flown mission offers, and a table that somebody typed, into a search that has flown nowhere."""
-    flown = bring_in(server, checked("file-of", 0.0))
-    screen = open_screen(server)
+    flown = bring_in(server, checked(f"file-of-{size}", 0.0))
+    screen = open_screen(server, "", **touched(size))
     part = screen.part
     row(screen, flown).locator("details.export summary").click()
     with screen.page.expect_download() as taken:
@@ -358,6 +379,7 @@ def test_our_own_bearing_files_are_brought_in_on_the_page(
     spec = server.get(f"/api/missions/{flown}")["spec"]
     here = httpx.post(server.url.rstrip("/") + "/api/missions", json=spec, timeout=20).json()["mission_id"]
     screen.open(here)
+    card(screen, "checks")
     part("recording").locator("summary").first.click()
     for path, bearings in ((exported, len(theirs)), (typed, 2)):
         part("recording-files").set_input_files(path)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 from playwright.sync_api import expect
-from screen import OpenScreen, Screen
+from screen import OpenScreen
 from served import Server
 
-from backend.events import BeliefUpdated
+from backend.events import BeliefUpdated, Recorded, SafetyVetoed
+from backend.reasons import carried
+from backend.reasons.safety import PilotControls
+from tests.browser.by_thumb import HELD_IN_HAND, card, slide, touched
 from tests.browser.sweep import SIZES, TOO_WIDE
 from tests.browser.test_after_flight import FLOWN, bring_in, checked, row
 
@@ -20,40 +22,14 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(900)]
 
 ANSWERED_MS = 180_000
 """The first forecast of a server waits until what it needs is compiled, where nobody did that before."""
-HELD_IN_HAND = ("tablet", "phone")
 
 
-def touched(size: str) -> dict[str, Any]:
-    width, height = SIZES[size]
-    return {"viewport": {"width": width, "height": height}, "has_touch": True, "is_mobile": True}
-
-
-def card(screen: Screen, name: str) -> None:
-    """A phone shows one card at a time."""
-    tab = screen.part(f"card-{name}")
-    if tab.is_visible():
-        tab.tap()
-    assert not screen.evaluate(TOO_WIDE), f"{name} is wider than the screen"
-
-
-def slide(screen: Screen, name: str) -> None:
-    """With one finger, from the knob to the end."""
-    knob = screen.part(name)
-    knob.scroll_into_view_if_needed()
-    box = knob.bounding_box()
-    assert box is not None
-    y, half = box["y"] + box["height"] / 2, box["height"] / 2
-    finger = screen.page.context.new_cdp_session(screen.page)
-
-    def at(x: float) -> list[dict[str, float]]:
-        return [{"x": x, "y": y}]
-
-    finger.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": at(box["x"] + half)})
-    for step in range(1, 11):
-        x = box["x"] + half + step / 10 * (box["width"] - box["height"])
-        finger.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": at(x)})
-    finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-    finger.detach()
+def vetoed(flown: list[Recorded]) -> list[Recorded]:
+    """The same flight, with a place that was not taken half way."""
+    half = len(flown) // 2
+    veto = flown[half].model_copy(update={"event": SafetyVetoed(craft_id="craft-1", reason=carried(PilotControls()))})
+    told = [*flown[:half], veto, *flown[half:]]
+    return [record.model_copy(update={"seq": seq}) for seq, record in enumerate(told, start=1)]
 
 
 @pytest.mark.parametrize("size", HELD_IN_HAND)
@@ -111,7 +87,7 @@ def test_a_flight_is_looked_for_labelled_and_told_about_with_a_thumb(
 def test_a_flight_is_replayed_supposed_compared_and_printed_with_a_thumb(
     server: Server, open_screen: OpenScreen, size: str, tmp_path: Path
 ) -> None:
-    mission = bring_in(server, checked(f"replayed-{size}", 0.0))
+    mission = bring_in(server, vetoed(checked(f"replayed-{size}", 0.0)))
     screen = open_screen(server, f"#/mission/{mission}", **touched(size))
     part, page = screen.part, screen.page
     screen.map_ready()
@@ -131,7 +107,7 @@ def test_a_flight_is_replayed_supposed_compared_and_printed_with_a_thumb(
     expect(part("go-live")).to_have_attribute("data-live", "false")
     screen.expect_belief(0)
     current = page.locator("li[aria-current=true] [data-testid=event-row]")
-    for kind, shown in (("decision", "plan_chosen"), ("bearing", "bearing_measured")):
+    for kind, shown in (("decision", "plan_chosen"), ("bearing", "bearing_measured"), ("alert", "safety_vetoed")):
         part("jump").select_option(kind)
         expect(current).to_have_attribute("data-kind", shown)
         expect(current).to_be_in_viewport()

@@ -14,6 +14,7 @@ from playwright.sync_api import FloatRect, Locator, expect
 from screen import OpenScreen, Screen
 from served import Server
 
+from tests.browser.by_thumb import EVERY_SIZE, card, touched
 from tests.browser.sweep import SIZES
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
@@ -51,14 +52,18 @@ def held(server: Server) -> str:
     return mission
 
 
+ON_EVERY_SIZE = pytest.mark.parametrize("screen", EVERY_SIZE, indirect=True)
+
+
 @pytest.fixture
-def screen(server: Server, open_screen: OpenScreen, held: str) -> Screen:
-    made = open_screen(server, f"#/mission/{held}")
+def screen(request: pytest.FixtureRequest, server: Server, open_screen: OpenScreen, held: str) -> Screen:
+    made = open_screen(server, f"#/mission/{held}", **touched(getattr(request, "param", "laptop")))
     made.map_ready()
     made.expect_phase("hold")
     return made
 
 
+@ON_EVERY_SIZE
 def test_resume_is_offered_only_while_it_would_be_accepted(server: Server, held: str, screen: Screen) -> None:
     resume = screen.part("resume")
 
@@ -82,12 +87,14 @@ def test_resume_is_offered_only_while_it_would_be_accepted(server: Server, held:
     screen.hold()
 
 
+@ON_EVERY_SIZE
 def test_who_has_control_is_what_the_facts_say_after_the_pilot_gave_back(server: Server, screen: Screen) -> None:
     control = screen.part("control")
     expect(control).to_have_text("Crossfix has control")
     server.order("pilot_mode", mode=PILOTS)
     expect(control).to_have_text(f"The pilot has control ({PILOTS})")
     expect(screen.part("waits-for")).to_contain_text("pilot")
+    card(screen, "events")
     taken = screen.row("authority_changed").last
     expect(taken).to_contain_text("The pilot has control")
     number = taken.get_attribute("data-seq")
@@ -96,6 +103,7 @@ def test_who_has_control_is_what_the_facts_say_after_the_pilot_gave_back(server:
     screen.page.reload()
     expect(control).to_have_text("The pilot has given control back: you may resume")
 
+    card(screen, "events")
     screen.page.locator(f"[data-testid=event-row][data-seq='{number}']").click()
     expect(control).to_have_text(f"The pilot has control ({PILOTS})")
     screen.part("go-live").click()

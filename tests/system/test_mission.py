@@ -23,6 +23,7 @@ async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, 
         await operator.until_event("flight_started")
         await second.watch()
         ended = await operator.until_event("mission_ended", wall_s=120)
+        await second.until_event("mission_ended")
         await operator.until_phase("ground")
         await second.until_phase("ground")
         assert [e["seq"] for e in operator.events] == list(range(1, len(operator.events) + 1))

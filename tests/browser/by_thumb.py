@@ -1,0 +1,50 @@
+"""A tablet and a phone in the hand: their screens, what one card shows, and a finger that slides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from screen import Screen
+
+from tests.browser.sweep import SIZES, TOO_WIDE
+
+HELD_IN_HAND = ("tablet", "phone")
+EVERY_SIZE = ("laptop", *HELD_IN_HAND)
+
+
+def touched(size: str) -> dict[str, Any]:
+    """How a browser shows it; a laptop has no touches."""
+    width, height = SIZES[size]
+    return {
+        "viewport": {"width": width, "height": height},
+        "has_touch": size in HELD_IN_HAND,
+        "is_mobile": size in HELD_IN_HAND,
+    }
+
+
+def card(screen: Screen, name: str) -> None:
+    """A phone shows one card at a time."""
+    tab = screen.part(f"card-{name}")
+    if tab.is_visible():
+        tab.tap()
+    assert not screen.evaluate(TOO_WIDE), f"{name} is wider than the screen"
+
+
+def slide(screen: Screen, name: str) -> None:
+    """With one finger, from the knob to the end."""
+    knob = screen.part(name)
+    knob.scroll_into_view_if_needed()
+    box = knob.bounding_box()
+    assert box is not None
+    y, half = box["y"] + box["height"] / 2, box["height"] / 2
+    finger = screen.page.context.new_cdp_session(screen.page)
+
+    def at(x: float) -> list[dict[str, float]]:
+        return [{"x": x, "y": y}]
+
+    finger.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": at(box["x"] + half)})
+    for step in range(1, 11):
+        x = box["x"] + half + step / 10 * (box["width"] - box["height"])
+        finger.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": at(x)})
+    finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    finger.detach()
