@@ -379,6 +379,7 @@ def test_our_own_bearing_files_are_brought_in_on_the_page(
     spec = server.get(f"/api/missions/{flown}")["spec"]
     here = httpx.post(server.url.rstrip("/") + "/api/missions", json=spec, timeout=20).json()["mission_id"]
     screen.open(here)
+    screen.map_ready()
     card(screen, "checks")
     part("recording").locator("summary").first.click()
     for path, bearings in ((exported, len(theirs)), (typed, 2)):
