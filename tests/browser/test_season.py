@@ -233,6 +233,7 @@ def test_a_bundle_opened_in_another_installation_is_the_same_mission(
         screen.part("what-if").locator("summary").click()
         screen.part("what-if-sigma").fill("20")
         screen.part("what-if-ask").click()
+        expect(screen.part("what-if-steps")).to_contain_text("± 20.0°")
         found = [screen.part("what-if-steps").inner_text()]
         screen.go(f"#/compare/{ID}")
         found += screen.part("compare-row").first.all_inner_texts()
