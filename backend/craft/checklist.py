@@ -5,14 +5,16 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Sequence
 
-from backend.craft.endurance import unknown
+import numpy as np
+
+from backend.craft.endurance import Endurance, unknown
 from backend.craft.equipment import CraftEquipment
 from backend.craft.ground_check import ground_checks, knows_nothing
 from backend.craft.listening import Listening, channels_for, channels_of
 from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
 from backend.craft.return_altitude import least_return_altitude_m, return_altitude_check
-from backend.craft.safety import Situation, lasts_for, limits_of, start_vetoes
+from backend.craft.safety import Limits, Situation, battery_to_return_percent, limits_of, start_vetoes
 from backend.events import CheckFact
 from backend.ports import Grounds
 from backend.reasons import Reason, carried, checks
@@ -151,3 +153,11 @@ def check_fact(check: PreflightCheck) -> CheckFact:
 
 def _fact(name: CheckName, ok: bool, reason: Reason, blocking: bool = True) -> CheckFact:
     return CheckFact(name=name, ok=ok, reason=reason, blocking=blocking)
+
+
+def lasts_for(limits: Limits, endurance: Endurance, turns: int) -> bool:
+    """Whether a full battery does, with the way to the middle of the area and home, and the reserve."""
+    east, north = (float(x) for x in np.vstack(limits.problem.area).mean(axis=0))
+    takes = endurance.way_percent([(east, north)], limits.speed_m_s, turns * limits.measurement_time_s)
+    home = battery_to_return_percent(limits, limits.frame.to_geo(east, north), endurance, limits.altitude_relative_m)
+    return takes + home + limits.reserve_percent <= 100.0

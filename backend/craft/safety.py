@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Literal
 
-import numpy as np
 from shapely import LineString, Point, unary_union
 from shapely.geometry.base import BaseGeometry
 
@@ -33,10 +32,6 @@ from planner.types import Problem
 
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
-LAST_SHARE = 0.5
-"""Of the reserve: a charge that leaves less is the last to return with."""
-LAND_SPARE_PERCENT = 5.0
-"""A charge that is no further above what the landing here takes is for landing here."""
 ALTITUDE_TOLERANCE_M = 0.5
 """Of an altitude that went to AMSL and back."""
 ROUNDING_M = 0.01
@@ -216,28 +211,6 @@ def take_off_battery_vetoes(limits: Limits, situation: Situation) -> tuple[Reaso
             return (safety.TurnBeyondBattery(limits.measurement_time_s, charge - left, needed, reserve),)
         case _:
             return found
-
-
-def lasts_for(limits: Limits, endurance: Endurance, turns: int) -> bool:
-    """Whether a full battery does, with the way to the middle of the area and home, and the reserve."""
-    east, north = (float(x) for x in np.vstack(limits.problem.area).mean(axis=0))
-    takes = endurance.way_percent([(east, north)], limits.speed_m_s, turns * limits.measurement_time_s)
-    home = battery_to_return_percent(limits, limits.frame.to_geo(east, north), endurance, limits.altitude_relative_m)
-    return takes + home + limits.reserve_percent <= 100.0
-
-
-def battery_stage(limits: Limits, situation: Situation) -> BatteryStage:
-    """How low a battery is that no longer leaves the reserve. One whose charge is not known: it should return."""
-    telemetry, endurance = situation.telemetry, situation.endurance
-    charge, position, height = telemetry.battery_percent, telemetry.position, telemetry.altitude_relative_m
-    if charge is None or position is None:
-        return "return"
-    height = limits.altitude_relative_m if height is None else height
-    down = endurance.way_percent((), limits.speed_m_s, landing_s(height))
-    if charge < down + LAND_SPARE_PERCENT and legs_home(limits.problem, limits.frame.to_enu(position)):
-        return "land"
-    spare = charge - battery_to_return_percent(limits, position, endurance, height)
-    return "last" if spare < LAST_SHARE * limits.reserve_percent else "return"
 
 
 def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:

@@ -120,23 +120,6 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     expect(offset).to_have_value("0")
 
 
-def test_a_season_is_told_by_vehicle_and_by_antenna(server: Server, open_screen: OpenScreen) -> None:
-    def of_craft(recorded: list[Recorded], craft: str) -> list[Recorded]:
-        return [Recorded.model_validate_json(r.model_dump_json().replace('"craft-1"', f'"{craft}"')) for r in recorded]
-
-    for number, (craft, off_deg) in enumerate((("owl-finder", 0.0), ("owl-finder", 0.0), ("fox-finder", 40.0))):
-        bring_in(server, of_craft(checked(f"of-{craft}-{number}", off_deg), craft))
-    screen = open_screen(server, "#/calibration")
-    two_sigma = screen.part("reliability").nth(1)
-    for craft, bearings, held in (("owl-finder", "6", "100 %"), ("fox-finder", "3", "0 %")):
-        screen.page.get_by_label("Vehicle").select_option(craft)
-        expect(two_sigma).to_have_attribute("data-of", bearings)
-        expect(two_sigma.locator("td").first).to_have_text(held)
-    (antenna,) = server.get("/api/calibration?craft=fox-finder")["antennas"]
-    screen.page.get_by_label("Antenna").select_option(antenna)
-    expect(two_sigma).to_have_attribute("data-of", "3")
-
-
 def how_sharp(server: Server, screen: Screen) -> None:
     """Beside how often it was right stands how much was stated: of bearings, places and times."""
     events = [record.event for record in FLOWN]

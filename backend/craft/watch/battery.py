@@ -5,10 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from backend.craft import inputs
-from backend.craft.safety import BATTERY_STALE_S, BatteryStage, Limits, Situation, battery_stage, battery_vetoes
+from backend.craft.endurance import landing_s
+from backend.craft.safety import (
+    BATTERY_STALE_S,
+    BatteryStage,
+    Limits,
+    Situation,
+    battery_to_return_percent,
+    battery_vetoes,
+)
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState
+from backend.craft.way_home import legs_home
 from backend.events import Phase
 
+LAST_SHARE = 0.5
+"""Of the reserve: a charge that leaves less is the last to return with."""
+LAND_SPARE_PERCENT = 5.0
+"""A charge that is no further above what the landing here takes is for landing here."""
 RECOVERED_PERCENT = 2.0
 """A low battery counts as recovered with this much to spare: a charge at the limit raises one alert."""
 
@@ -69,3 +82,17 @@ class BatteryWatch:
 def flown_by(phase: Phase) -> str:
     """Who has to act on a low battery: the mission itself does when it flies, people when it is held."""
     return "mission" if phase in AUTOMATIC else "home" if phase in HOMEWARD else "people"
+
+
+def battery_stage(limits: Limits, situation: Situation) -> BatteryStage:
+    """How low a battery is that no longer leaves the reserve. One whose charge is not known: it should return."""
+    telemetry, endurance = situation.telemetry, situation.endurance
+    charge, position, height = telemetry.battery_percent, telemetry.position, telemetry.altitude_relative_m
+    if charge is None or position is None:
+        return "return"
+    height = limits.altitude_relative_m if height is None else height
+    down = endurance.way_percent((), limits.speed_m_s, landing_s(height))
+    if charge < down + LAND_SPARE_PERCENT and legs_home(limits.problem, limits.frame.to_enu(position)):
+        return "land"
+    spare = charge - battery_to_return_percent(limits, position, endurance, height)
+    return "last" if spare < LAST_SHARE * limits.reserve_percent else "return"

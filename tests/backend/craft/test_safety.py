@@ -12,12 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import box
 
+from backend.craft.checklist import lasts_for
 from backend.craft.endurance import LEG_S, landing_s, unknown
 from backend.craft.safety import (
     Situation,
-    battery_stage,
     battery_to_return_percent,
-    lasts_for,
     place_vetoes,
     resume_vetoes,
     return_vetoes,
@@ -27,6 +26,7 @@ from backend.craft.safety import (
     turn_vetoes,
     vehicle_vetoes,
 )
+from backend.craft.watch.battery import battery_stage
 from backend.reasons import safety
 from backend.search.area import EDGE_TOLERANCE_M
 from backend.spec import FlightSpec
