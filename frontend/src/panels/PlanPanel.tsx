@@ -56,6 +56,9 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
   const lit = useRef<HTMLTableRowElement>(null);
   const box = useRef<HTMLDivElement>(null);
   useEffect(() => showRow(box.current, lit.current), [highlighted.value]);
+  useEffect(() => {
+    if (box.current) box.current.scrollTop = 0; // another decision is read from its chosen place on
+  }, [plan]);
   useEffect(
     () => () => {
       highlighted.value = null; // a number of this decision means another place in the next
@@ -244,6 +247,14 @@ export function PlanPanel() {
       </h2>
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
+      {missionId && isLive && startedAt && liveMission.value.missionId === missionId && <Decision id={missionId} />}
+      {missionId && isLive && source.value?.keptByServer && phase === "hold" && (
+        <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
+          {t("area.change")}
+        </a>
+      )}
+      {cursor.value !== null && source.value?.keptByServer && <WhatIfPanel />}
+      {fact && fact.candidates.length > 0 && <CandidateTable plan={fact} />}
       {fact ? (
         <p class="why" data-testid="why">
           <span class="muted">{t("plan.why")}</span> {reasonText(fact.reason)}
@@ -256,14 +267,6 @@ export function PlanPanel() {
           {t("order.back", { name: emitterName(spec?.emitters ?? [], id), reason: reasonText(reason) })}
         </p>
       ))}
-      {missionId && isLive && startedAt && liveMission.value.missionId === missionId && <Decision id={missionId} />}
-      {missionId && isLive && source.value?.keptByServer && phase === "hold" && (
-        <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
-          {t("area.change")}
-        </a>
-      )}
-      {cursor.value !== null && source.value?.keptByServer && <WhatIfPanel />}
-      {fact && fact.candidates.length > 0 && <CandidateTable plan={fact} />}
       {missionId && isLive && source.value?.keptByServer && (proposed || fact) && (
         <ProfileCard missionId={missionId} place={(proposed ?? fact!).place} />
       )}

@@ -106,32 +106,27 @@ function mutableOf(source: BearingSource): { of: "person" | "import"; name: stri
   }
 }
 
-/** Whether a bearing counts is an operator's wish, and can be undone. */
-function Counting({ id, fact, leftOut }: { id: string; fact: BearingMeasured; leftOut: boolean }) {
-  const { source, bearing_id } = fact;
+/** A person's bearings can be left out all at once. */
+function MuteButton({ id, source }: { id: string; source: BearingSource }) {
   const mutable = mutableOf(source);
+  if (!mutable) return null;
   const muted = mission.value.muted.has(sourceKey(source));
   return (
-    <div class="sweep-counting">
-      <CountButton id={id} of={bearing_id} leftOut={leftOut} words={leftOut ? "sweep.include" : "sweep.exclude"} />
-      {mutable && (
-        <button
-          type="button"
-          class="small"
-          data-testid="mute-source"
-          aria-pressed={muted}
-          onClick={() => void send("sweep", id, { ...mutable, kind: "mute_source", muted: !muted, reason: "" })}
-        >
-          {t(muted ? "sweep.unmute" : "sweep.mute", { source: sourceName(source) })}
-        </button>
-      )}
-    </div>
+    <button
+      type="button"
+      class="small"
+      data-testid="mute-source"
+      aria-pressed={muted}
+      onClick={() => void send("sweep", id, { ...mutable, kind: "mute_source", muted: !muted, reason: "" })}
+    >
+      {t(muted ? "sweep.unmute" : "sweep.mute", { source: sourceName(source) })}
+    </button>
   );
 }
 
 function Facts({ sweep }: { sweep: Sweep }) {
   const { fact, leftOut, excluded } = sweep;
-  const id = mission.value.missionId;
+  const id = cursor.value === null && !mission.value.ended ? mission.value.missionId : null;
   if (fact.kind === "sweep_rejected") {
     return (
       <div class="sweep-facts">
@@ -140,7 +135,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
         {fact.silence && <div data-testid="sweep-silence">{t(excluded ? "sweep.silence.excluded" : "sweep.silence")}</div>}
-        {fact.silence && cursor.value === null && !mission.value.ended && id && (
+        {fact.silence && id && (
           <CountButton id={id} of={fact.sweep_id} leftOut={excluded} words={excluded ? "sweep.silence.include" : "sweep.silence.exclude"} />
         )}
         {fact.turn && <TurnWords turn={fact.turn} />}
@@ -149,12 +144,17 @@ function Facts({ sweep }: { sweep: Sweep }) {
   }
   return (
     <div class="sweep-facts">
-      <strong>
-        {whereOf(fact)}
-        {excluded && ` (${t(leftOut ? "sweep.excluded" : "sweep.muted")})`}
-      </strong>
-      <div class="sweep-bearing" data-testid="sweep-bearing" data-value={fact.bearing_deg}>
-        {t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) })}
+      <div class="sweep-head">
+        <div>
+          <strong>
+            {whereOf(fact)}
+            {excluded && ` (${t(leftOut ? "sweep.excluded" : "sweep.muted")})`}
+          </strong>
+          <div class="sweep-bearing" data-testid="sweep-bearing" data-value={fact.bearing_deg}>
+            {t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) })}
+          </div>
+        </div>
+        {id && <CountButton id={id} of={fact.bearing_id} leftOut={leftOut} words={leftOut ? "sweep.include" : "sweep.exclude"} />}
       </div>
       <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
       {fact.snr_db !== null && <div>{t("sweep.snr", { snr: formatNumber(fact.snr_db, 0) })}</div>}
@@ -174,7 +174,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
           {reasonText(remark)}
         </div>
       ))}
-      {cursor.value === null && !mission.value.ended && id && <Counting id={id} fact={fact} leftOut={leftOut} />}
+      {id && <MuteButton id={id} source={fact.source} />}
     </div>
   );
 }
