@@ -267,7 +267,7 @@ class FieldStudy:
             bearings=len(measured),
             rejected=rejected,
             turned_deg=turned_deg,
-            off_deg=tuple(off for b in measured if (off := self._off_deg(field, b)) is not None),
+            off_deg=tuple(off for b in measured if (off := self.off_deg(field, b)) is not None),
         )
 
     def _choose(
@@ -355,7 +355,7 @@ class FieldStudy:
         wide = {name: self.options.sigma_factor * getattr(fact, name) for name in shares}
         return fact.model_copy(update=wide)
 
-    def _off_deg(self, field: Field, fact: BearingMeasured) -> float | None:
+    def off_deg(self, field: Field, fact: BearingMeasured) -> float | None:
         """What a bearing is off by, the compass' error taken out; None from nearer than FAR_M."""
         x, y = self.task.frame.to_enu(fact.place)
         east, north = field.truth[0] - x, field.truth[1] - y

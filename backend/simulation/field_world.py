@@ -108,7 +108,7 @@ class Field:
         """A whole turn at (x, y), from this heading of the nose on, None: from any. What chance there is depends on the
         seed and the number of the sweep alone."""
         rng = np.random.default_rng([self.seed, number, 2])
-        here = dataclasses.replace(self._at(x, y), seed=int(rng.integers(2**31)))
+        here = dataclasses.replace(self.at(x, y), seed=int(rng.integers(2**31)))
         place, any_deg = self.frame.to_geo(x, y), float(rng.uniform(0.0, 360.0))
         link = RadioLink(here, FREQUENCY_HZ)
         begin_deg = any_deg if start_deg is None else start_deg
@@ -142,7 +142,7 @@ class Field:
         ]
         return samples, headings
 
-    def _at(self, x: float, y: float) -> World:
+    def at(self, x: float, y: float) -> World:
         """The world as it is shadowed at (x, y)."""
         direct, *echoes = (float(shadow.db(x, y)) for shadow in self.shadows)
         emitter = dataclasses.replace(self.world.emitters[0], power_dbm=self.world.emitters[0].power_dbm - direct)
