@@ -243,6 +243,7 @@ export const de: Record<MessageKey, string> = {
   "report.missing.name": "Sagen, wer Sie sind",
   "report.missing.place": "Sagen, wo Sie stehen",
   "report.missing.direction": "Sagen, woher Sie es hören",
+  "report.missing.search": "Die Suche ist noch nicht geladen",
   "report.stage.waiting": "wartet auf Verbindung",
   "report.stage.sent": "zählt",
   "report.stage.withdrawing": "wird zurückgenommen",

@@ -82,6 +82,7 @@ export const pagesEn = {
   "report.missing.name": "Say who you are",
   "report.missing.place": "Say where you stand",
   "report.missing.direction": "Say which way you hear it",
+  "report.missing.search": "The search is not loaded yet",
   "report.stage.waiting": "waits for a link",
   "report.stage.sent": "counted",
   "report.stage.withdrawing": "is being taken back",

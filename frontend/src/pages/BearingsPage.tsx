@@ -1,6 +1,6 @@
 // For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { backspace, countAgain, keepSending, queue, report, unreached } from "../commands/reportBearings";
+import { backspace, countAgain, queue, report, reporting, unreached } from "../commands/reportBearings";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { AdviceCard } from "../panels/AdviceCard";
@@ -9,7 +9,7 @@ import { ProblemBox } from "../panels/ProblemNote";
 import { WaysCard } from "../panels/WaysCard";
 import { muteReporter } from "../sources/reportsApi";
 import { advised, advisedWay } from "../state/advice";
-import { lastOf, pending, type Stage } from "../state/bearingQueue";
+import { isOwn, lastOf, pending, type Stage } from "../state/bearingQueue";
 import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
 import { emittersThen } from "../state/moment";
@@ -110,7 +110,7 @@ function Pick<T extends string>({
 }
 
 function Sent({ missionId }: { missionId: string }) {
-  const own = queue.value.filter((one) => one.missionId === missionId).toReversed();
+  const own = queue.value.filter((one) => one.missionId === missionId && isOwn(one, reporting.value)).toReversed();
   if (own.length === 0) return null;
   return (
     <ul class="report-sent" data-testid="report-sent">
@@ -170,7 +170,6 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const [emitter, setEmitter] = useState<string | null>(null);
   const who = useRef<HTMLDetailsElement>(null);
   const gps = useGps(setHere);
-  useEffect(() => keepSending(), []);
   useEffect(() => stopCompass, []);
   const emitters = spec?.emitters ?? [];
   const heard = emitter ?? emitters[0]?.emitter_id ?? null;
@@ -184,7 +183,8 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const signedIn = me.value?.name ?? null;
   const named = signedIn !== null || reporter.name.trim() !== "";
   const ready = here !== null && direction !== null && named && heard !== null && ended === null;
-  const missing = ended !== null ? "ended" : !named ? "name" : here === null ? "place" : direction === null ? "direction" : null;
+  const unsaid = !named ? "name" : here === null ? "place" : direction === null ? "direction" : null;
+  const missing = ended !== null ? "ended" : (unsaid ?? (heard === null ? "search" : null));
   const send = () => {
     if (!ready) return;
     report(missionId, {
@@ -200,7 +200,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
     who.current!.open = true;
     who.current!.querySelector("input")!.focus();
   };
-  const waiting = pending(queue.value);
+  const waiting = pending(queue.value, reporting.value);
   return (
     <div class="report" data-testid="report-page">
       <header class="report-head">
@@ -354,7 +354,12 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         <OwnMute missionId={missionId} name={signedIn ?? reporter.name.trim()} by={signedIn === null ? reporter.name.trim() : null} />
       )}
       <footer class="report-foot">
-        <button type="button" data-testid="report-back" disabled={!lastOf(queue.value, missionId)} onClick={() => backspace(missionId)}>
+        <button
+          type="button"
+          data-testid="report-back"
+          disabled={!lastOf(queue.value, missionId, reporting.value)}
+          onClick={() => backspace(missionId)}
+        >
           ⌫ {t("report.back")}
         </button>
         <button
