@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Request, Response
-from pydantic import AwareDatetime, Field, StringConstraints
+from pydantic import AfterValidator, AwareDatetime, Field, StringConstraints
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
@@ -14,6 +14,7 @@ from backend.api.services import Services
 from backend.auth.principal import Principal
 from backend.events import BearingMeasured
 from backend.kraken import KrakenRefused, read_kraken
+from backend.names import seen
 from backend.reasons.search import KrakenUnreadable
 from backend.search.errors import MissionInputError
 from backend.search.reported import ReportedBearing, on_our_clock
@@ -22,7 +23,11 @@ from backend.spec import Id, Model, Place
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["missions"], responses=PROBLEM_RESPONSES)
 
 BearingId = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{8,64}$")]
-Who = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^\x00-\x1f]*$")]
+Who = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^\x00-\x1f]*$"),
+    AfterValidator(seen),
+]
 
 
 class BearingReport(Model):
