@@ -246,6 +246,7 @@ export const de: Record<MessageKey, string> = {
   "report.missing.search": "Die Suche ist noch nicht geladen",
   "report.stage.waiting": "wartet auf Verbindung",
   "report.stage.sent": "zählt",
+  "report.stage.silent": "aufgehoben, zählt nicht",
   "report.stage.withdrawing": "wird zurückgenommen",
   "report.stage.back": "zurückgenommen",
   "report.stage.restoring": "zählt gleich wieder",

@@ -85,6 +85,7 @@ export const pagesEn = {
   "report.missing.search": "The search is not loaded yet",
   "report.stage.waiting": "waits for a link",
   "report.stage.sent": "counted",
+  "report.stage.silent": "kept, does not count",
   "report.stage.withdrawing": "is being taken back",
   "report.stage.back": "taken back",
   "report.stage.restoring": "about to count again",

@@ -57,10 +57,13 @@ function keepReporter(reporter: Reporter): void {
 
 const turned = (degrees: number) => ((degrees % 360) + 360) % 360;
 
-const stageWords = (stage: Stage, problem: string | null): string =>
-  stage === "refused"
-    ? t("report.stage.refused", { problem: problem ?? "" })
-    : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
+/** silent: the server has it, and it does not count: left out there, or its reporter is muted. */
+const stageWords = (stage: Stage, problem: string | null, silent: boolean): string =>
+  stage === "sent" && silent
+    ? t("report.stage.silent")
+    : stage === "refused"
+      ? t("report.stage.refused", { problem: problem ?? "" })
+      : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
 
 function useGps(onPlace: (at: LonLat) => void) {
   const [state, setState] = useState<"off" | "asking" | "on" | "denied">("off");
@@ -112,12 +115,15 @@ function Pick<T extends string>({
 function Sent({ missionId }: { missionId: string }) {
   const own = queue.value.filter((one) => one.missionId === missionId && isOwn(one, reporting.value)).toReversed();
   if (own.length === 0) return null;
+  const silent = new Set(
+    [...emittersThen.value.values()].flatMap(({ bearings }) => bearings.filter((b) => b.excluded).map((b) => b.fact.bearing_id)),
+  );
   return (
     <ul class="report-sent" data-testid="report-sent">
       {own.slice(0, 6).map(({ report: one, stage, problem }) => (
         <li key={one.bearing_id} data-stage={stage}>
           <span>{formatBearing(one.bearing_deg)}</span> <span class="muted">{one.taken_at_utc?.slice(11, 19)}</span>{" "}
-          <span>{stageWords(stage, problem)}</span>
+          <span>{stageWords(stage, problem, silent.has(one.bearing_id))}</span>
           {stage === "back" && (
             <button type="button" class="small" data-testid="report-again" onClick={() => countAgain(one.bearing_id)}>
               {t("report.again")}
