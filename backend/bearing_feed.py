@@ -90,11 +90,15 @@ def read_any(data: bytes, now_s: float) -> ReportedBearing:
 
 def _number(told: dict[str, object], name: str, low: float, high: float) -> float:
     value = told.get(name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    try:
+        found = float(value) if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
+    except OverflowError:  # a whole number of hundreds of digits
+        found = math.nan
+    if not math.isfinite(found):
         raise DatagramRefused(f"its {name} is no number")
-    if not low <= value <= high:
-        raise DatagramRefused(f"its {name} is {value:g}; it must be between {low:g} and {high:g}")
-    return float(value)
+    if not low <= found <= high:
+        raise DatagramRefused(f"its {name} is {found:g}; it must be between {low:g} and {high:g}")
+    return found
 
 
 def _name(source: object) -> str:
@@ -110,7 +114,7 @@ Add = Callable[[ReportedBearing], Awaitable[object]]
 
 @dataclass(slots=True)
 class BearingFeed(asyncio.DatagramProtocol):
-    """now: the mission's clock, UTC epoch seconds; steady: one that never runs backwards, s."""
+    """now: the clock of the world outside, UTC epoch seconds; steady: one that never runs backwards, s."""
 
     add: Add
     now: Callable[[], float]
@@ -158,11 +162,16 @@ class BearingFeed(asyncio.DatagramProtocol):
                 await self.add(report)
                 self.taken += 1
             except (MissionInputError, MissionConflict, MissionNotFound) as error:
-                self._refuse(report.by, sentence_of(error.reason))
+                self._refuse_report(report, sentence_of(error.reason))
             except DatagramRefused as refused:
-                self._refuse(report.by, str(refused))
+                self._refuse_report(report, str(refused))
             except Exception:
                 log.exception("a bearing of %s was not taken", report.by)
+
+    def _refuse_report(self, report: ReportedBearing, why: str) -> None:
+        """What the search did not take keeps no later one out."""
+        self._last.pop(report.by, None)
+        self._refuse(report.by, why)
 
     def _refuse(self, sender: str, why: str) -> None:
         """Logged at most every ten seconds; what was not logged is counted."""

@@ -160,7 +160,7 @@ def _after_row(left: LeftInFlight | None, mission_id: str, row: dict[str, Any]) 
 
 def _locked(path: Path) -> bool:
     """By a server that runs and flies: this one will not start, and must not stop its vehicle."""
-    with suppress(FileNotFoundError), path.open() as lock:
+    with suppress(FileNotFoundError, NotADirectoryError), path.open() as lock:
         try:
             fcntl.flock(lock.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -26,7 +26,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
 from backend.search.localization import localization
-from backend.search.reported import ReportedBearing
+from backend.search.reported import ReportedBearing, on_our_clock
 from backend.settings import AUDIT_FILE, Settings
 from backend.simulation.emitters import SimulatedEmitter, world_of
 from backend.simulation.hangar import Hangar
@@ -87,9 +87,9 @@ async def _bearings_by_udp(settings: Settings, missions: MissionRoom, clock: Sca
         flying = missions.flights.active
         if flying is None:
             raise DatagramRefused("no search flies")
-        await missions.reports.add(flying.mission_id, report)
+        await missions.reports.add(flying.mission_id, on_our_clock(report, clock.now(), time.time()))
 
-    feed = BearingFeed(add, clock.now, time.monotonic)
+    feed = BearingFeed(add, time.time, time.monotonic)
     async with open_feed(feed, settings.bearings_udp_host, port) as (host, bound):
         log.warning("bearings are taken by UDP on %s, port %d", host, bound)
         yield

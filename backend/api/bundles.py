@@ -43,14 +43,15 @@ async def bring_in_bundle(
         raise ApiProblem(422, BundleFileWrong("damaged", WAYS)) from error
     size_bytes = sum(len(sweep.samples) for sweep in brought.sweeps)
     await services.stocks["recordings"].must_take(len(brought.sweeps), size_bytes)
+    if ways is not None and await services.journal.mission(brought.mission_id) is None:
+        # first: without their mission they are forgotten, and a mission that is here is not brought in again
+        await in_thread("overlay", ways_folder(services).keep, brought.mission_id, ways)
     try:
         new = await services.journal.bring_in(brought, principal.name)
     except JournalConflict as conflict:
         raise ApiProblem(409, BundleUnreadable("differs")) from conflict
     if not new:
         response.status_code = 200
-    elif ways is not None:
-        await in_thread("overlay", ways_folder(services).keep, brought.mission_id, ways)
     return MissionBrought(
         mission_id=brought.mission_id, already=not new, events=len(brought.rows), sweeps=len(brought.sweeps)
     )

@@ -158,8 +158,9 @@ async def _pattern(file: UploadFile, workers: Workers) -> AntennaPattern:
 
 
 def _called(file: UploadFile) -> str:
-    """By its owner."""
-    return Path((file.filename or "").replace("\\", "/")).name[-120:] or "recording"
+    """By its owner, as far as it can be shown."""
+    name = Path((file.filename or "").replace("\\", "/")).name
+    return "".join(letter for letter in name if letter.isprintable())[-120:] or "recording"
 
 
 def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:

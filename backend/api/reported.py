@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Request, Response
-from pydantic import AwareDatetime, Field, StringConstraints
+from pydantic import AfterValidator, AwareDatetime, Field, StringConstraints
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
@@ -14,15 +14,20 @@ from backend.api.services import Services
 from backend.auth.principal import Principal
 from backend.events import BearingMeasured
 from backend.kraken import KrakenRefused, read_kraken
+from backend.names import seen
 from backend.reasons.search import KrakenUnreadable
 from backend.search.errors import MissionInputError
-from backend.search.reported import ReportedBearing
+from backend.search.reported import ReportedBearing, on_our_clock
 from backend.spec import Id, Model, Place
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["missions"], responses=PROBLEM_RESPONSES)
 
 BearingId = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{8,64}$")]
-Who = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^\x00-\x1f]*$")]
+Who = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^\x00-\x1f]*$"),
+    AfterValidator(seen),
+]
 
 
 class BearingReport(Model):
@@ -65,7 +70,7 @@ async def report_bearing(
         place=report.place,
         bearing_deg=report.bearing_deg,
         sigma_deg=report.sigma_deg,
-        taken_at_s=_on_our_clock(services, services.wall() if taken is None else taken.timestamp()),
+        taken_at_s=services.wall() if taken is None else taken.timestamp(),
         emitter_id=report.emitter_id,
         snr_db=report.snr_db,
     )
@@ -73,7 +78,8 @@ async def report_bearing(
 
 
 async def _taken(services: Services, mission_id: str, reported: ReportedBearing, response: Response) -> BearingTaken:
-    recorded, already = await services.missions.reports.add(mission_id, reported)
+    report = on_our_clock(reported, services.now(), services.wall())
+    recorded, already = await services.missions.reports.add(mission_id, report)
     if already:
         response.status_code = 200
     fact = recorded.event
@@ -99,9 +105,7 @@ async def report_kraken(
         reported = read_kraken(body, services.wall())
     except KrakenRefused as error:
         raise MissionInputError(KrakenUnreadable(str(error)), "body") from error
-    by = _who(principal, reported.by)
-    taken_at_s = _on_our_clock(services, reported.taken_at_s)
-    return await _taken(services, mission_id, replace(reported, by=by, taken_at_s=taken_at_s), response)
+    return await _taken(services, mission_id, replace(reported, by=_who(principal, reported.by)), response)
 
 
 @router.delete("/bearings/{bearing_id}", status_code=204)
@@ -140,12 +144,6 @@ async def mute_reporter(
 ) -> None:
     """Stop counting one's own bearings, or count them again. Whoever controls the search does it for others."""
     await services.missions.reports.mute(mission_id, _who(principal, reporter.by), reporter.muted)
-
-
-def _on_our_clock(services: Services, taken_at_s: float) -> float:
-    """A moment of the world outside on the mission's clock, by how long it is past: the two part where the machine was
-    suspended, its clock was set, or a simulated mission runs faster."""
-    return services.now() - (services.wall() - taken_at_s)
 
 
 def _who(principal: Principal, said: str | None) -> str:

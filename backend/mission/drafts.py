@@ -14,10 +14,12 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
 from backend.mission.learning import learn_from_check
 from backend.mission.records import Records
+from backend.names import in_one_line, seen
 from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable, WasDeleted
+from backend.reasons.request import FieldInvalid
 from backend.search.area import centre_of
 from backend.search.band import check_band
-from backend.search.errors import MissionConflict
+from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.importing import Upload, import_facts, imported_before
 from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
@@ -126,9 +128,24 @@ class Drafts:
 
 
 def _check_spec(spec: MissionSpec) -> None:
-    """Raises MissionInputError when the altitude lies outside its band, or when the areas make no sense, wherever the
-    vehicle is: a mission may be planned far from it, or hold recordings only. Preflight refuses to fly it there."""
+    """Raises MissionInputError when a name would be shown as something else, the altitude lies outside its band, or
+    when the areas make no sense, wherever the vehicle is: a mission may be planned far from it, or hold recordings
+    only. Preflight refuses to fly it there."""
+    _check_names(spec)
     check_band(spec.flight)
     check_never_stop(spec)
     check_told_apart(spec.emitters)
     search_task(spec, centre_of(spec.area), 0.0)
+
+
+def _check_names(spec: MissionSpec) -> None:
+    """By the rule of labels; here and not in the specification, since those of before are read with whatever they are
+    called. Raises MissionInputError."""
+    field = "name"
+    try:
+        seen(spec.name)
+        for number, emitter in enumerate(spec.emitters):
+            field = f"emitters.{number}.label"
+            in_one_line(emitter.label)
+    except ValueError as error:
+        raise MissionInputError(FieldInvalid(str(error)), field) from error

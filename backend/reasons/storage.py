@@ -16,7 +16,8 @@ class DatabaseSilent:
     code: Literal["database_silent"] = "database_silent"
     english: ClassVar[Words] = Words(
         "The database does not answer: {detail}.",
-        "Check that it is running; what happens meanwhile is kept in the spool on the disk.",
+        "Check that it is running, and that its disk has room and can be written; what happens meanwhile is kept in the "
+        "spool on the disk.",
     )
 
 
@@ -145,7 +146,7 @@ class DatabaseUnfit:
     code: Literal["database_unfit"] = "database_unfit"
     english: ClassVar[Words] = Words(
         "The database {database} cannot be used: {detail}.",
-        "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+        "Check --data-dir and CROSSFIX_DATABASE_URL, and that the disk can be written and has room.",
     )
 
 

@@ -7,7 +7,7 @@ same for all bearings of a source: a joint belief finds it out.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from backend.events import BearingMeasured, PersonSource
 from backend.reasons import Reason
@@ -85,6 +85,12 @@ def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> 
         remarks=remarks,
         taken_at_s=report.taken_at_s,
     )
+
+
+def on_our_clock(report: ReportedBearing, now_s: float, wall_s: float) -> ReportedBearing:
+    """Its moment on the mission's clock instead of the world's, by how long it is past: the two part where the machine
+    was suspended, its clock was set, or a simulated mission runs faster. now_s, wall_s: what the two show."""
+    return replace(report, taken_at_s=now_s - (wall_s - report.taken_at_s))
 
 
 def compass_share_deg(sigma_deg: float) -> float:

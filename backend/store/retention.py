@@ -18,6 +18,7 @@ from sqlalchemy import ColumnElement, delete, func, select, true, tuple_
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.ports import TrackPoint
+from backend.store.days_deleted import DaysDeleted
 from backend.store.digest import to_us
 from backend.store.iq_folder import IqFolder
 from backend.store.paths import MOST_POINTS, packed_path
@@ -139,10 +140,12 @@ async def _pack_piece(connection: AsyncConnection, mission_id: str, craft_id: st
     return len(pieces)
 
 
-async def bury(engine: AsyncEngine, keep_days: float, now: datetime) -> int:
+async def bury(engine: AsyncEngine, keep_days: float, now: datetime, among: Collection[str] | None = None) -> int:
     """Missions that were deleted longer ago go for good, with all that is kept of them, one in a transaction. How many.
-    Raises what the driver raises."""
+    among: only these; None: whichever. Raises what the driver raises."""
     gone = (missions.c.deleted_at_us < to_us(now - timedelta(days=keep_days))) & ~missions.c.flying
+    if among is not None:
+        gone &= missions.c.mission_id.in_(among)
     writer = engine.execution_options(write=True)
     one = select(missions.c.mission_id).where(gone).limit(1).with_for_update()  # a restoration waits, or is waited for
     taken = 0
@@ -193,11 +196,14 @@ async def _forget(engine: AsyncEngine, beside: Beside, stays: ColumnElement[bool
     return taken
 
 
-async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder, *others: Beside) -> None:
+async def keep_thin(
+    engine: AsyncEngine, keep_days: float | None, days: DaysDeleted, iq: IqFolder, *others: Beside
+) -> None:
     """Beside a running server: soon after its start, then every few hours. Runs until cancelled; no error ends it.
     keep_days None: raw sweeps are kept for ever; paths are packed all the same. others: kept as long as the mission.
 
-    The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it.
+    The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it. Since it may be wrong by
+    years, a deleted mission also stays until the server has run on thirty days more (see `DaysDeleted`).
     """
     wait_s = FIRST_AFTER_S
     while True:
@@ -205,15 +211,22 @@ async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder, 
         wait_s = EVERY_S
         now = datetime.now(UTC)
         beside = (partial(_take_iq, iq, keep_days), *(partial(_take_gone, other) for other in others))
-        for chore in (_bury, pack_paths, *beside, partial(_take_sweeps, keep_days)):
+        for chore in (partial(_bury, days), pack_paths, *beside, partial(_take_sweeps, keep_days)):
             try:
                 await chore(engine, now)
             except Exception:
                 log.exception("old raw sweeps, paths or missions could not be taken; tried again later")
 
 
-async def _bury(engine: AsyncEngine, now: datetime) -> None:
-    buried = await bury(engine, DELETED_DAYS, now)
+async def _bury(days: DaysDeleted, engine: AsyncEngine, now: datetime) -> None:
+    async with engine.connect() as connection:
+        query = select(missions.c.mission_id).where(missions.c.deleted_at_us.is_not(None))
+        deleted = list(await connection.scalars(query))
+    counted = await asyncio.to_thread(days.count, deleted, now.date())
+    due = [name for name in deleted if counted[name] >= DELETED_DAYS]
+    buried = 0
+    for at in range(0, len(due), AT_ONCE):
+        buried += await bury(engine, DELETED_DAYS, now, due[at : at + AT_ONCE])
     if buried:
         log.info("%d missions deleted more than %g days ago are gone", buried, DELETED_DAYS)
 

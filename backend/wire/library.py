@@ -7,18 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, StringConstraints
 
 from backend.events.review import Tag, TruthWay
+from backend.names import seen
 from backend.spec import Id, Model, Place
-
-TURNS_WRITING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-
-
-def _seen(text: str) -> str:
-    """Refuses what a list shows as nothing, or as something else than what it is."""
-    if any(ord(letter) < 0x20 or letter in TURNS_WRITING for letter in text):
-        raise ValueError("write it in one line, without control characters")
-    if not any(letter.isprintable() and not letter.isspace() for letter in text):
-        raise ValueError("write at least one letter that can be seen")
-    return text
 
 
 def _each_once(tags: list[str]) -> list[str]:
@@ -44,8 +34,8 @@ class Sketch(Model):
 class MissionLabels(Model):
     """The name in the list, and what people say about the mission."""
 
-    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120), AfterValidator(_seen)]
-    tags: Annotated[list[Annotated[Tag, AfterValidator(_seen)]], Field(max_length=20), AfterValidator(_each_once)]
+    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120), AfterValidator(seen)]
+    tags: Annotated[list[Annotated[Tag, AfterValidator(seen)]], Field(max_length=20), AfterValidator(_each_once)]
     notes: Annotated[str, StringConstraints(max_length=4000)] = ""
 
 

@@ -2,6 +2,7 @@ import { render } from "preact";
 import { App } from "./app/App";
 import { followRoute, followSession } from "./app/follow";
 import { watchKeys } from "./app/keys";
+import { keepSending } from "./commands/reportBearings";
 import { report } from "./commands/send";
 import { t } from "./i18n";
 import { watchAlerts } from "./panels/alertSounds";
@@ -31,3 +32,4 @@ if (import.meta.env.PROD && "serviceWorker" in navigator) {
 }
 followSession();
 followRoute();
+keepSending();

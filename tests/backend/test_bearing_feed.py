@@ -56,6 +56,7 @@ def test_a_datagram_of_horus_programs_is_a_bearing() -> None:
         (datagram(latitude=float("nan")), "latitude is no number"),
         (datagram(latitude=1e999), "latitude is no number"),
         (datagram(latitude=True), "latitude is no number"),
+        (datagram(latitude=10**400), "latitude is no number"),
         (datagram(longitude="7.2"), "longitude is no number"),
         (datagram(longitude=200), "between -180 and 180"),
         (datagram(bearing=None), "bearing is no number"),
@@ -153,9 +154,10 @@ async def test_a_search_that_has_ended_refuses_and_the_feed_goes_on() -> None:
     feed.datagram_received(datagram(), ("192.0.2.1", 1))
     await until(lambda: feed.refused == 1)
     search.over = False
-    feed.datagram_received(datagram(source="other"), ("192.0.2.1", 1))
+    feed.datagram_received(datagram(), ("192.0.2.1", 1))
     await until(lambda: feed.taken == 1)
     running.cancel()
+    assert [one.by for one in search.taken] == ["yagi-1"], "what was not taken keeps no later one out"
 
 
 async def test_a_port_that_is_taken_is_said_in_one_sentence() -> None:

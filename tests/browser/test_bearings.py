@@ -63,6 +63,10 @@ def test_a_phone_adds_two_bearings_to_a_flying_search_and_takes_one_back(
     page.get_by_test_id("report-back").click()
     expect(page.locator("[data-testid=report-sent] li").first).to_have_attribute("data-stage", "back")
     expect(page.get_by_test_id("report-waiting")).to_be_hidden()
+    page.get_by_test_id("report-mute").click()
+    expect(page.locator("[data-testid=report-sent] li").last).to_contain_text("does not count")
+    page.get_by_test_id("report-mute").click()
+    expect(page.locator("[data-testid=report-sent] li").last).to_contain_text("counted")
     events = server.events(mission)
     said = [e for e in events if e["kind"] == "bearing_measured" and e["source"]["kind"] == "person"]
     assert [one["source"]["name"] for one in said] == ["Ada", "Ada"]

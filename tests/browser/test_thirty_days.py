@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -37,7 +38,7 @@ def show_deleted(screen: Screen) -> None:
 
 
 def aged(server: Server, days: dict[str, float]) -> None:
-    """While the server is away: as if they had been deleted that many days ago."""
+    """While the server is away: as if they had been deleted that many days ago, and it had run on each since."""
     with sqlite3.connect(server.data_dir / "crossfix.sqlite") as database:
         for mission_id, ago in days.items():
             at_us = round((datetime.now(UTC) - timedelta(days=ago)).timestamp() * 1e6)
@@ -47,6 +48,8 @@ def aged(server: Server, days: dict[str, float]) -> None:
             )
             assert changed.rowcount == 1
     database.close()
+    ran = {mission_id: [int(ago), "2026-11-01"] for mission_id, ago in days.items()}
+    (server.data_dir / "deleted.json").write_text(json.dumps(ran))
 
 
 def test_a_deleted_mission_comes_back_until_the_thirtieth_day_and_is_gone_after_it(

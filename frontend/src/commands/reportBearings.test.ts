@@ -1,7 +1,8 @@
 // @vitest-environment happy-dom
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { pending, type Queued, read, type Stage } from "../state/bearingQueue";
-import { countAgain, keepSending, queue, report, sendWaiting } from "./reportBearings";
+import { session } from "../state/session";
+import { countAgain, keepSending, queue, report, sendWaiting, unreached } from "./reportBearings";
 
 const KEY = "crossfix.bearings";
 const BEARING = { by: "Ada", emitter_id: null, place: { lat: 50.6, lon: 7.2 }, bearing_deg: 12, sigma_deg: 12, snr_db: null };
@@ -11,11 +12,14 @@ const of = (id: string, stage: Stage = "waiting"): Queued => ({
   stage,
   problem: null,
 });
+const signedIn = (name: string) =>
+  ({ mode: "people", person: { person_id: name, name, role: "operator" } }) as unknown as NonNullable<typeof session.value>;
 const ids = () => queue.value.map((one) => one.report.bearing_id);
 
 let sent: string[];
 beforeEach(() => {
   sent = [];
+  session.value = null;
   queue.value = [];
   localStorage.clear();
   vi.stubGlobal("fetch", async (_path: string, init: RequestInit) => {
@@ -64,4 +68,34 @@ it("goes on with what it has where the browser keeps nothing more", async () => 
   report("m", BEARING);
   await sendWaiting();
   expect(pending(queue.value)).toBe(2);
+});
+
+it("sends nobody's bearings in another's name: they wait until that person is signed in again", async () => {
+  session.value = signedIn("Ben");
+  vi.stubGlobal("fetch", () => Promise.reject(new TypeError("no link")));
+  unreached.value = false;
+  report("m", { ...BEARING, by: null });
+  await vi.waitFor(() => expect(unreached.value).toBe(true));
+  const names: string[] = [];
+  vi.stubGlobal("fetch", async () => {
+    names.push((session.value as { person: { name: string } }).person.name);
+    return new Response("{}", { status: 201, headers: { "content-type": "application/json" } });
+  });
+  session.value = signedIn("Ada");
+  await sendWaiting();
+  expect([names, pending(queue.value, "Ada"), pending(queue.value, "Ben")]).toEqual([[], 0, 1]);
+  session.value = signedIn("Ben");
+  await sendWaiting();
+  expect([names, queue.value[0]!.stage]).toEqual([["Ben"], "sent"]);
+});
+
+it("asks who is signed in before it sends what an earlier page left", async () => {
+  queue.value = [{ ...of("a"), who: "Ben" }];
+  const asked: string[] = [];
+  vi.stubGlobal("fetch", async (path: string) => {
+    asked.push(String(path));
+    return new Response(JSON.stringify(signedIn("Ada")), { status: 200, headers: { "content-type": "application/json" } });
+  });
+  await sendWaiting();
+  expect([asked.length, queue.value[0]!.stage]).toEqual([1, "waiting"]);
 });

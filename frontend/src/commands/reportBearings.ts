@@ -1,9 +1,10 @@
 // The phone's bearings go to the server one after the other; without a link they wait in the browser.
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
 import { RequestFailed } from "../sources/problem";
 import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } from "../sources/reportsApi";
 import { add, answered, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
+import { me, refreshSession, session } from "../state/session";
 
 const KEY = "crossfix.bearings";
 const AGAIN_MS = 4000;
@@ -19,6 +20,11 @@ function stored(): string | null {
 export const queue = signal<Queue>(read(stored()));
 /** The last attempt did not reach the server. */
 export const unreached = signal(false);
+
+/** Whose bearings are sent: see `isOwn`. */
+export const reporting = computed<string | null | undefined>(() =>
+  session.value === null || session.value === "unreachable" ? undefined : (me.value?.name ?? null),
+);
 
 /** False: a private window keeps nothing, a full one not all; the bearings live as long as the page. */
 let keeps = true;
@@ -67,10 +73,12 @@ async function say({ missionId, report, stage }: Queued): Promise<void> {
 let busy = false;
 
 export async function sendWaiting(): Promise<void> {
-  if (busy) return;
+  if (busy || !nextOf(queue.peek(), reporting.peek())) return;
   busy = true;
   try {
-    for (let next = nextOf(queue.peek()); next; next = nextOf(queue.peek())) {
+    if (reporting.peek() === undefined) await refreshSession();
+    if (reporting.peek() === undefined) throw new Error("the server has not said who is signed in");
+    for (let next = nextOf(queue.peek(), reporting.peek()); next; next = nextOf(queue.peek(), reporting.peek())) {
       await say(next);
       unreached.value = false;
     }
@@ -83,12 +91,12 @@ export async function sendWaiting(): Promise<void> {
 
 export function report(missionId: string, bearing: Omit<BearingReport, "bearing_id" | "taken_at_utc">): void {
   const taken = { ...bearing, bearing_id: newCommandId(), taken_at_utc: new Date().toISOString() };
-  change((now) => add(now, missionId, taken));
+  change((now) => add(now, missionId, taken, reporting.peek() ?? undefined));
   void sendWaiting();
 }
 
 export function backspace(missionId: string): void {
-  change((now) => takeBackLast(now, missionId));
+  change((now) => takeBackLast(now, missionId, reporting.peek()));
   void sendWaiting();
 }
 
@@ -97,7 +105,7 @@ export function countAgain(bearingId: string): void {
   void sendWaiting();
 }
 
-/** As long as the page is open. */
+/** As long as the page is open, whatever it shows. */
 export function keepSending(): () => void {
   const again = setInterval(() => void sendWaiting(), AGAIN_MS);
   const online = () => void sendWaiting();

@@ -1718,7 +1718,8 @@ export const reasonsEn: ReasonTable = {
   },
   database_silent: {
     text: "The database does not answer: {detail}.",
-    remedy: "Check that it is running; what happens meanwhile is kept in the spool on the disk.",
+    remedy:
+      "Check that it is running, and that its disk has room and can be written; what happens meanwhile is kept in the spool on the disk.",
   },
   database_slow: {
     text: "The database's last answer took {answer_s:1}.",
@@ -1764,7 +1765,7 @@ export const reasonsEn: ReasonTable = {
   },
   database_unfit: {
     text: "The database {database} cannot be used: {detail}.",
-    remedy: "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+    remedy: "Check --data-dir and CROSSFIX_DATABASE_URL, and that the disk can be written and has room.",
   },
   database_later: {
     text: "A later Crossfix has written the database {database} (schema {revision}).",

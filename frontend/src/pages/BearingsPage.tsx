@@ -1,6 +1,6 @@
 // For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { backspace, countAgain, keepSending, queue, report, unreached } from "../commands/reportBearings";
+import { backspace, countAgain, queue, report, reporting, unreached } from "../commands/reportBearings";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { AdviceCard } from "../panels/AdviceCard";
@@ -9,7 +9,7 @@ import { ProblemBox } from "../panels/ProblemNote";
 import { WaysCard } from "../panels/WaysCard";
 import { muteReporter } from "../sources/reportsApi";
 import { advised, advisedWay } from "../state/advice";
-import { lastOf, pending, type Stage } from "../state/bearingQueue";
+import { isOwn, lastOf, pending, type Stage } from "../state/bearingQueue";
 import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
 import { emittersThen } from "../state/moment";
@@ -57,10 +57,13 @@ function keepReporter(reporter: Reporter): void {
 
 const turned = (degrees: number) => ((degrees % 360) + 360) % 360;
 
-const stageWords = (stage: Stage, problem: string | null): string =>
-  stage === "refused"
-    ? t("report.stage.refused", { problem: problem ?? "" })
-    : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
+/** silent: the server has it, and it does not count: left out there, or its reporter is muted. */
+const stageWords = (stage: Stage, problem: string | null, silent: boolean): string =>
+  stage === "sent" && silent
+    ? t("report.stage.silent")
+    : stage === "refused"
+      ? t("report.stage.refused", { problem: problem ?? "" })
+      : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
 
 function useGps(onPlace: (at: LonLat) => void) {
   const [state, setState] = useState<"off" | "asking" | "on" | "denied">("off");
@@ -110,14 +113,17 @@ function Pick<T extends string>({
 }
 
 function Sent({ missionId }: { missionId: string }) {
-  const own = queue.value.filter((one) => one.missionId === missionId).toReversed();
+  const own = queue.value.filter((one) => one.missionId === missionId && isOwn(one, reporting.value)).toReversed();
   if (own.length === 0) return null;
+  const silent = new Set(
+    [...emittersThen.value.values()].flatMap(({ bearings }) => bearings.filter((b) => b.excluded).map((b) => b.fact.bearing_id)),
+  );
   return (
     <ul class="report-sent" data-testid="report-sent">
       {own.slice(0, 6).map(({ report: one, stage, problem }) => (
         <li key={one.bearing_id} data-stage={stage}>
           <span>{formatBearing(one.bearing_deg)}</span> <span class="muted">{one.taken_at_utc?.slice(11, 19)}</span>{" "}
-          <span>{stageWords(stage, problem)}</span>
+          <span>{stageWords(stage, problem, silent.has(one.bearing_id))}</span>
           {stage === "back" && (
             <button type="button" class="small" data-testid="report-again" onClick={() => countAgain(one.bearing_id)}>
               {t("report.again")}
@@ -170,7 +176,6 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const [emitter, setEmitter] = useState<string | null>(null);
   const who = useRef<HTMLDetailsElement>(null);
   const gps = useGps(setHere);
-  useEffect(() => keepSending(), []);
   useEffect(() => stopCompass, []);
   const emitters = spec?.emitters ?? [];
   const heard = emitter ?? emitters[0]?.emitter_id ?? null;
@@ -184,7 +189,8 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const signedIn = me.value?.name ?? null;
   const named = signedIn !== null || reporter.name.trim() !== "";
   const ready = here !== null && direction !== null && named && heard !== null && ended === null;
-  const missing = ended !== null ? "ended" : !named ? "name" : here === null ? "place" : direction === null ? "direction" : null;
+  const unsaid = !named ? "name" : here === null ? "place" : direction === null ? "direction" : null;
+  const missing = ended !== null ? "ended" : (unsaid ?? (heard === null ? "search" : null));
   const send = () => {
     if (!ready) return;
     report(missionId, {
@@ -200,7 +206,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
     who.current!.open = true;
     who.current!.querySelector("input")!.focus();
   };
-  const waiting = pending(queue.value);
+  const waiting = pending(queue.value, reporting.value);
   return (
     <div class="report" data-testid="report-page">
       <header class="report-head">
@@ -354,7 +360,12 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         <OwnMute missionId={missionId} name={signedIn ?? reporter.name.trim()} by={signedIn === null ? reporter.name.trim() : null} />
       )}
       <footer class="report-foot">
-        <button type="button" data-testid="report-back" disabled={!lastOf(queue.value, missionId)} onClick={() => backspace(missionId)}>
+        <button
+          type="button"
+          data-testid="report-back"
+          disabled={!lastOf(queue.value, missionId, reporting.value)}
+          onClick={() => backspace(missionId)}
+        >
           ⌫ {t("report.back")}
         </button>
         <button

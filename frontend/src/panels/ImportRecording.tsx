@@ -4,6 +4,7 @@ import { asProblem } from "../commands/send";
 import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem } from "../sources/problem";
+import { chosenCard, drawersCard } from "../state/card";
 import { source } from "../state/connection";
 import { emitterName } from "../state/emitterName";
 import { inFlight } from "../state/mission";
@@ -52,7 +53,9 @@ export function recordingForm(given: FormData): FormData | string {
   return form;
 }
 
-async function submit(missionId: string, element: HTMLFormElement): Promise<void> {
+/** On a phone that has chosen no card, what the file brings must not put another over what is said of it. */
+export async function submit(missionId: string, element: HTMLFormElement): Promise<void> {
+  chosenCard.value = drawersCard(mission.value.phase);
   const form = recordingForm(new FormData(element));
   if (typeof form === "string") {
     outcome.value = { missionId, problem: localProblem(t("recording.title"), form) };

@@ -12,6 +12,8 @@ export interface Queued {
   stage: Stage;
   /** Why the server refused it, in its words. */
   problem: string | null;
+  /** Who was signed in when it was taken; missing: nobody had to be, or the server could not be asked. */
+  who?: string;
 }
 
 export type Queue = readonly Queued[];
@@ -22,10 +24,13 @@ const TO_SAY: readonly Stage[] = ["waiting", "withdrawing", "restoring"];
 /** Of those of which the server knows; what it has not heard is kept, however many there are. */
 export const KEPT = 40;
 
-export function add(queue: Queue, missionId: string, report: Report): Queue {
+/** name: who is signed in, null for nobody, undefined when that is not known: then it may be anybody's. */
+export const isOwn = ({ who }: Queued, name: string | null | undefined): boolean => name === undefined || who === undefined || who === name;
+
+export function add(queue: Queue, missionId: string, report: Report, who?: string): Queue {
   const said = queue.filter((one) => !TO_SAY.includes(one.stage));
   const old = new Set(said.slice(0, Math.max(0, said.length + 1 - KEPT)));
-  return [...queue.filter((one) => !old.has(one)), { missionId, report, stage: "waiting" as const, problem: null }];
+  return [...queue.filter((one) => !old.has(one)), { missionId, report, stage: "waiting" as const, problem: null, ...(who && { who }) }];
 }
 
 const change = (queue: Queue, bearingId: string, changes: Partial<Queued>): Queue =>
@@ -48,19 +53,21 @@ export const restore = (queue: Queue, bearingId: string): Queue =>
   queue.map((one) => (one.report.bearing_id === bearingId && one.stage === "back" ? { ...one, stage: "restoring", problem: null } : one));
 
 /** The last own bearing that counts, or is on its way to. */
-export const lastOf = (queue: Queue, missionId: string): Queued | undefined =>
-  queue.findLast((one) => one.missionId === missionId && COUNTS.includes(one.stage));
+export const lastOf = (queue: Queue, missionId: string, name?: string | null): Queued | undefined =>
+  queue.findLast((one) => one.missionId === missionId && COUNTS.includes(one.stage) && isOwn(one, name));
 
 /** "Backspace". One that may have reached the server although it never answered is withdrawn there as well. */
-export function takeBackLast(queue: Queue, missionId: string): Queue {
-  const last = lastOf(queue, missionId);
+export function takeBackLast(queue: Queue, missionId: string, name?: string | null): Queue {
+  const last = lastOf(queue, missionId, name);
   return last ? change(queue, last.report.bearing_id, { stage: "withdrawing" }) : queue;
 }
 
-/** What is to be said to the server next, the oldest first. */
-export const nextOf = (queue: Queue): Queued | undefined => queue.find((one) => TO_SAY.includes(one.stage));
+/** What is to be said to the server next, the oldest first; another's waits until they are signed in again. */
+export const nextOf = (queue: Queue, name?: string | null): Queued | undefined =>
+  queue.find((one) => TO_SAY.includes(one.stage) && isOwn(one, name));
 
-export const pending = (queue: Queue): number => queue.filter((one) => TO_SAY.includes(one.stage)).length;
+export const pending = (queue: Queue, name?: string | null): number =>
+  queue.filter((one) => TO_SAY.includes(one.stage) && isOwn(one, name)).length;
 
 const isQueued = (one: unknown): one is Queued =>
   typeof one === "object" && one !== null && "report" in one && "missionId" in one && "stage" in one;

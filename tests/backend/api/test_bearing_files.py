@@ -55,6 +55,13 @@ async def test_a_krakens_file_localizes_and_counts_once(client, services):
     assert len(await facts(services, mission_id, "bearing_measured")) == 4
 
 
+async def test_a_file_is_called_what_can_be_shown_of_its_name(client, services):
+    mission_id = await draft(client)
+    files = {"files": ("../roof\u202evsc.csv", kraken(), "text/csv")}
+    reply = await client.post(f"/api/missions/{mission_id}/recordings", files=files)
+    assert (reply.status_code, reply.json()["filename"]) == (201, "roofvsc.csv")
+
+
 async def test_our_own_bearing_file_comes_back_as_it_went(client, services):
     first, second = await draft(client), await draft(client)
     assert (await bring(client, first, kraken())).status_code == 201

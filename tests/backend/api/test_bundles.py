@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import errno
 import gzip
 import io
 import json
@@ -18,6 +19,7 @@ import numpy as np
 import pytest
 
 from backend.events import BearingMeasured, MissionDrafted, MissionEnded, NetsNoted, TruthNoted
+from backend.maps.ways_folder import WaysFolder
 from backend.ports import TrackPoint
 from backend.reasons.request import BundleFileWrong, BundleUnreadable
 from backend.settings import REPOSITORY
@@ -209,6 +211,24 @@ async def test_the_ways_of_a_mission_come_with_it_and_a_bundle_without_them_is_a
     await there.delete(f"/api/missions/{ID}/ways")
     assert (await there.post("/api/bundles", content=content)).status_code == 200
     assert (await there.get(f"/api/missions/{ID}/ways")).json()["features"] == [], "the same again changes nothing"
+
+
+async def test_a_mission_whose_ways_find_no_room_comes_in_whole_later(client, flown, elsewhere, settings, monkeypatch):
+    there, _ = elsewhere
+    files = WaysFiles.of_settings(settings)
+    files.directory.mkdir()
+    files.path(ID).write_bytes(ways_of())
+    content = await exported(client, flown)
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as disk:
+        disk.setattr(WaysFolder, "keep", full)
+        assert (await there.post("/api/bundles", content=content)).status_code == 507
+    assert (await there.get("/api/missions")).json()["missions"] == []
+    assert (await there.post("/api/bundles", content=content)).status_code == 201
+    assert len((await there.get(f"/api/missions/{ID}/ways")).json()["features"]) == 2
 
 
 FAR = {"type": "MultiLineString", "coordinates": [[[7.2, 1e308], [7.21, 50.6]]]}

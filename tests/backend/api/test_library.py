@@ -114,6 +114,26 @@ async def test_labels_are_kept_and_searched_and_the_list_has_a_small_map(client)
         assert (await client.put(f"/api/missions/{mission_id}/labels", json=wrong)).status_code == 422
 
 
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"name": "owls\u202egpj"}, "name"),
+        ({"name": "o\nwls"}, "name"),
+        ({"name": "\u200b"}, "name"),
+        ({"emitters": [{"label": "vixen\u202egpj"}]}, "emitters.0.label"),
+    ],
+)
+async def test_a_draft_is_named_by_the_rule_of_labels(client, changes, field):
+    mission_id = await draft(client)
+    spec = (await client.get(f"/api/missions/{mission_id}")).json()["spec"]
+    for told in (
+        await client.post("/api/missions", json=spec | changes),
+        await client.put(f"/api/missions/{mission_id}/spec", json=spec | changes),
+    ):
+        assert (told.status_code, told.json()["errors"][0]["field"]) == (422, field), told.text
+        assert told.json()["reason"]["code"] == "field_invalid"
+
+
 async def test_odd_names_are_kept_as_they_were_written(client):
     mission_id = await draft(client)
     family = "\U0001f468\u200d\U0001f469\u200d\U0001f467"

@@ -157,6 +157,7 @@ async def test_a_machine_whose_clock_was_set_meanwhile_takes_what_phones_report(
         ({"emitter_id": "another"}, 422, "emitter_id"),
         ({"taken_at_utc": "2001-01-01T00:00:00Z"}, 422, "taken_at_utc"),
         ({"by": "x\n200 OK"}, 422, "by"),
+        ({"by": "Ada\u202expj"}, 422, "by"),
     ],
 )
 async def test_what_is_wrong_is_refused_by_its_field(

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import asyncio
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 
 import numpy as np
 import pytest
 from facts import HOME, SPEC
-from sqlalchemy import make_url
+from sqlalchemy import make_url, select
 from typer.testing import CliRunner
 
 from backend.cli.main import app
-from backend.events import MissionDrafted, MissionEnded, MissionStarted, Phase, PhaseChanged
+from backend.events import MissionDeleted, MissionDrafted, MissionEnded, MissionStarted, Phase, PhaseChanged
 from backend.reasons.flight import Ordered
 from backend.reasons.search import Localized
 from backend.store import retention
+from backend.store.days_deleted import DaysDeleted
 from backend.store.engine import engine_for_once
 from backend.store.iq_folder import IqFolder
 from backend.store.retention import old_sweeps, thin
+from backend.store.tables import missions
 from backend.store.told_folder import ToldFolder
 from backend.store.ways_files import WaysFiles
 from hardware.readings import Sweep
@@ -86,7 +88,8 @@ async def test_a_chore_that_fails_keeps_none_of_the_others_from_its_turn(bench, 
     monkeypatch.setattr(retention, "FIRST_AFTER_S", 0.0)
     engine = engine_for_once(bench.url, 60.0)
     others = ToldFolder(tmp_path / "told"), WaysFiles(tmp_path)
-    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, IqFolder(tmp_path / "iq"), *others))
+    days = DaysDeleted(tmp_path / "deleted.json")
+    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, days, IqFolder(tmp_path / "iq"), *others))
     async with asyncio.timeout(60):
         while (await old_sweeps(engine, 30.0, datetime.now(UTC))).sweeps:  # noqa: ASYNC110 (it says nothing)
             await asyncio.sleep(0.05)
@@ -94,6 +97,43 @@ async def test_a_chore_that_fails_keeps_none_of_the_others_from_its_turn(bench, 
     keeping.cancel()
     await asyncio.gather(keeping, return_exceptions=True)
     await engine.dispose()
+
+
+async def test_a_clock_that_was_set_ahead_buries_nothing(bench, tmp_path):
+    """Deleted yesterday; then the clock says 2036, the server runs on, and the clock is put right again."""
+    journal = await bench.open()
+    bench.now_s = NOW.timestamp()
+    await journal.append("deleted", [DRAFT, MissionDeleted(by="operator")])
+    days = DaysDeleted(tmp_path / "deleted.json")
+    engine = engine_for_once(bench.url, 5.0)
+
+    async def runs_on(*when: datetime) -> bool:
+        """Is the mission there after these days?"""
+        for now in when:
+            await retention._bury(days, engine, now)
+            await retention._bury(days, engine, now + timedelta(hours=1))
+        async with engine.connect() as connection:
+            return (await connection.execute(select(missions.c.mission_id))).first() is not None
+
+    try:
+        ahead = datetime(2036, 6, 1, tzinfo=UTC)
+        assert await runs_on(NOW + timedelta(days=1), *(ahead + timedelta(days=day) for day in range(5)))
+        assert await runs_on(*(NOW + timedelta(days=day) for day in range(2, 26)))
+        assert await runs_on(NOW + timedelta(days=29.9)), "the right clock's thirty days count as well"
+        assert not await runs_on(NOW + timedelta(days=31))
+    finally:
+        await engine.dispose()
+
+
+def test_days_count_once_each_and_begin_anew_when_a_mission_was_restored(tmp_path, caplog):
+    days, first = DaysDeleted(tmp_path / "deleted.json"), date(2026, 6, 1)
+    assert [days.count(["a"], first) for _ in range(3)] == [{"a": 0}] * 3
+    assert days.count(["a", "b"], first + timedelta(days=9)) == {"a": 1, "b": 0}
+    assert days.count(["b"], first + timedelta(days=10)) == {"b": 1}
+    assert days.count(["a", "b"], first + timedelta(days=11)) == {"a": 0, "b": 2}
+    days.file.write_bytes(b"[" * 100_000)
+    assert days.count(["b"], first) == {"b": 0}
+    assert "cannot be read" in caplog.text
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)

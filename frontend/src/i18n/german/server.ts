@@ -90,7 +90,8 @@ export const server = {
 
   database_silent: {
     text: "Die Datenbank antwortet nicht: {detail}.",
-    remedy: "Prüfen, ob sie läuft; was inzwischen geschieht, liegt in der Warteschlange auf der Platte.",
+    remedy:
+      "Prüfen, ob sie läuft und ihre Platte Platz hat und beschreibbar ist; was inzwischen geschieht, liegt in der Warteschlange auf der Platte.",
   },
   database_slow: {
     text: "Die letzte Antwort der Datenbank dauerte {answer_s:1}.",
@@ -133,7 +134,7 @@ export const server = {
   },
   database_unfit: {
     text: "Die Datenbank {database} ist nicht verwendbar: {detail}.",
-    remedy: "Prüfen, ob CROSSFIX_DATABASE_URL stimmt und die Platte beschreibbar ist.",
+    remedy: "Prüfen, ob --data-dir und CROSSFIX_DATABASE_URL stimmen und die Platte beschreibbar ist und Platz hat.",
   },
   another_server: {
     text: "Ein anderer Server benutzt {path}.",

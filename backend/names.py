@@ -1,0 +1,19 @@
+"""Names that people give: what a list would show as nothing, or as something else than what it is, is refused."""
+
+from __future__ import annotations
+
+TURNS_WRITING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+
+
+def in_one_line(text: str) -> str:
+    """Raises ValueError for control characters, and for those that turn the direction of writing."""
+    if any(ord(letter) < 0x20 or letter in TURNS_WRITING for letter in text):
+        raise ValueError("write it in one line, without control characters")
+    return text
+
+
+def seen(text: str) -> str:
+    """In one line, and not empty to the eye. Raises ValueError."""
+    if not any(letter.isprintable() and not letter.isspace() for letter in in_one_line(text)):
+        raise ValueError("write at least one letter that can be seen")
+    return text
