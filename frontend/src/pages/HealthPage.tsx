@@ -10,6 +10,7 @@ import type { Health, Problem, Reason } from "../wire";
 
 const REFRESH_MS = 3000;
 const DATABASES = { sqlite: "SQLite", postgresql: "PostgreSQL" } as const;
+const AUTOPILOTS = { px4: "PX4", ardupilot: "ArduPilot", unknown: null } as const;
 
 function Part({ name, good, children }: { name: string; good: boolean; children: ComponentChildren }) {
   return (
@@ -73,7 +74,11 @@ function Parts({ health }: { health: Health }) {
       </Part>
       {health.vehicles.map((vehicle) => (
         <Part name={t("health.vehicle", { craft: vehicle.craft_id })} good={vehicle.connected} key={vehicle.craft_id}>
-          {vehicle.reason ? <Why reason={vehicle.reason} /> : <p>{t("health.vehicleOk", { autopilot: vehicle.autopilot })}</p>}
+          {vehicle.reason ? (
+            <Why reason={vehicle.reason} />
+          ) : (
+            <p>{t("health.vehicleOk", { autopilot: AUTOPILOTS[vehicle.autopilot] ?? t("bar.unknown") })}</p>
+          )}
         </Part>
       ))}
     </>
