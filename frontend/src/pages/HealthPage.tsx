@@ -5,12 +5,12 @@ import { asProblem } from "../commands/send";
 import { reasonRemedy, reasonText, t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
+import { autopilotWords } from "../state/words";
 import { formatDuration, formatNumber } from "../units/quantities";
 import type { Health, Problem, Reason } from "../wire";
 
 const REFRESH_MS = 3000;
 const DATABASES = { sqlite: "SQLite", postgresql: "PostgreSQL" } as const;
-const AUTOPILOTS = { px4: "PX4", ardupilot: "ArduPilot", unknown: null } as const;
 
 function Part({ name, good, children }: { name: string; good: boolean; children: ComponentChildren }) {
   return (
@@ -77,7 +77,7 @@ function Parts({ health }: { health: Health }) {
           {vehicle.reason ? (
             <Why reason={vehicle.reason} />
           ) : (
-            <p>{t("health.vehicleOk", { autopilot: AUTOPILOTS[vehicle.autopilot] ?? t("bar.unknown") })}</p>
+            <p>{t("health.vehicleOk", { autopilot: autopilotWords(vehicle.autopilot) })}</p>
           )}
         </Part>
       ))}
