@@ -969,7 +969,7 @@ export const de: Record<MessageKey, string> = {
   "tour.end": "Rundgang beenden",
   "tour.step": "{step} von {count}",
   "tour.1":
-    "Abbruch, Halten und Rückkehr sind immer hier, ein Tippen, auf jeder Seite. Daneben steht, was das Fluggerät tut, wer steuert und worauf es wartet.",
+    "Abbruch, Halten und Rückkehr sind auf jeder Seite ein Tippen entfernt, auf dem Handy am unteren Rand. Hier steht, was das Fluggerät tut, wer steuert und worauf es wartet.",
   "tour.2":
     "Die Karte zeigt, wo der Sender sein kann: heller ist wahrscheinlicher, nichts ist unmöglich. Der Umriss fasst 95 %. Linien sind Peilungen, ihr Fehler ist der Keil.",
   "tour.3":
@@ -1110,7 +1110,7 @@ export const de: Record<MessageKey, string> = {
   "calibration.forecast": "In der 90-%-Zeit gefunden",
   "calibration.outliers": "Falsche Peilungen",
   "calibration.interval": "{low} bis {high} % ({of} geprüft)",
-  "calibration.wanted": "richtig sind {percent} %",
+  "calibration.wanted": "richtig wären {percent} %",
   "calibration.suggested": "Für den nächsten Flug",
   "calibration.sigma": "Peilfehler ±{sigma}°, {outliers} % falsche Peilungen.",
   "calibration.offset": "Alle Peilungen zeigen um {offset}° ± {error}° zu weit im Uhrzeigersinn: Übernommen wird es von jeder abgezogen.",

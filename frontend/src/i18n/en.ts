@@ -538,7 +538,7 @@ export const en = {
   "tour.end": "End the tour",
   "tour.step": "{step} of {count}",
   "tour.1":
-    "Abort, hold and return are always here, one tap, from every page. The words beside them say what the vehicle does, who has control and what it waits for.",
+    "Abort, hold and return are one tap away on every page; on a phone they are at the foot of the screen. The words here say what the vehicle does, who has control and what it waits for.",
   "tour.2":
     "The map shows where the emitter may be: brighter is likelier, nothing is impossible. The outline holds 95 %. Lines are bearings, with their error as a wedge.",
   "tour.3":
