@@ -1,4 +1,5 @@
 import { expect, it } from "vitest";
+import { locale } from "../units/locale";
 import type { MissionSpec } from "../wire";
 import { someSpec } from "../wire/examples";
 import { EMITTER, firstEmitter, PRIOR } from "./emitter";
@@ -36,6 +37,14 @@ it("numbers are read as people type them", () => {
   expect(typedNumber("-3")).toBe(-3);
   expect(typedNumber(".5")).toBe(0.5);
   for (const text of ["", "seven", "1.2.3", "0x10", "1 000"]) expect(typedNumber(text)).toBeNull();
+});
+
+it("numbers are shown as they are written in the operator's language", () => {
+  locale.value = "de";
+  expect(shownValue(868_300_000, 1e6)).toBe("868,3");
+  expect(typedNumber(shownValue(868_300_000, 1e6))).toBe(868.3);
+  locale.value = "en";
+  expect(shownValue(868_300_000, 1e6)).toBe("868.3");
 });
 
 it("what is shown in feet goes back as the same metres", () => {

@@ -1,5 +1,6 @@
 // The form as a table: which value of the specification stands where, in which unit, within which limits.
 import type { MessageKey } from "../i18n";
+import { locale } from "../units/locale";
 import type { UnitSystem } from "../units/quantities";
 import type { MissionSpec } from "../wire";
 
@@ -222,7 +223,10 @@ export function shownUnit(field: NumberField, system: UnitSystem): { unit: strin
 }
 
 /** Stored to shown, without the noise of floating point. */
-export const shownValue = (stored: number, scale: number): string => String(Number((stored / scale).toPrecision(7)));
+export function shownValue(stored: number, scale: number): string {
+  const text = String(Number((stored / scale).toPrecision(7)));
+  return locale.value === "de" ? text.replace(".", ",") : text;
+}
 
 /** Number from what was typed (a decimal comma is fine); null when it is none. */
 export function typedNumber(text: string): number | null {

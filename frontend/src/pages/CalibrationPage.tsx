@@ -39,7 +39,9 @@ function Reliability({ label, share, wanted, sharpness = null }: ReliabilityProp
         {t("calibration.interval", { low: percent(share.low), high: percent(share.high), of: share.of })}
         {wanted !== null && ` · ${t("calibration.wanted", { percent: wanted })}`}
       </td>
-      <td data-testid="sharpness">{sharpness}</td>
+      <td data-testid="sharpness" data-label={sharpness === null ? undefined : t("calibration.sharpness")}>
+        {sharpness}
+      </td>
     </tr>
   );
 }

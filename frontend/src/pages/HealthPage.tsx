@@ -5,6 +5,7 @@ import { asProblem } from "../commands/send";
 import { reasonRemedy, reasonText, t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
+import { autopilotWords } from "../state/words";
 import { formatDuration, formatNumber } from "../units/quantities";
 import type { Health, Problem, Reason } from "../wire";
 
@@ -73,7 +74,11 @@ function Parts({ health }: { health: Health }) {
       </Part>
       {health.vehicles.map((vehicle) => (
         <Part name={t("health.vehicle", { craft: vehicle.craft_id })} good={vehicle.connected} key={vehicle.craft_id}>
-          {vehicle.reason ? <Why reason={vehicle.reason} /> : <p>{t("health.vehicleOk", { autopilot: vehicle.autopilot })}</p>}
+          {vehicle.reason ? (
+            <Why reason={vehicle.reason} />
+          ) : (
+            <p>{t("health.vehicleOk", { autopilot: autopilotWords(vehicle.autopilot) })}</p>
+          )}
         </Part>
       ))}
     </>

@@ -134,7 +134,8 @@ function MissionReport({ told }: { told: Told }) {
   const { mission, events } = told;
   const { spec, startedAt, ended } = mission;
   const units = settings.value.units;
-  const date = (at: string) => new Date(at).toLocaleString(locale.value, { dateStyle: "long", timeStyle: "short", timeZone: "UTC" });
+  const date = (at: string) =>
+    new Date(at).toLocaleString(locale.value, { dateStyle: "long", timeStyle: "short", timeZone: "UTC", hourCycle: "h23" });
   const began = startedAt ?? events[0]?.at_utc ?? "";
   return (
     <article data-testid="report-mission">

@@ -38,7 +38,16 @@ export function Tour() {
   const step = steps[index]!;
   useEffect(() => {
     chosenCard.value = CARDS[step] ?? chosenCard.peek();
-    requestAnimationFrame(() => setBox(partOf(step)?.getBoundingClientRect() ?? null));
+    const moved = new ResizeObserver(() => setBox(partOf(step)?.getBoundingClientRect() ?? null));
+    const shown = requestAnimationFrame(() => {
+      const part = partOf(step);
+      if (part) moved.observe(part);
+      else setBox(null);
+    });
+    return () => {
+      cancelAnimationFrame(shown);
+      moved.disconnect();
+    };
   }, [step]);
   const end = () => {
     change("tourSeen", true);

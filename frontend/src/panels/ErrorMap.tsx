@@ -11,7 +11,11 @@ export function ErrorMap({ bearings }: { bearings: Calibration["bearings"] }) {
   const [lons, lats] = [bearings.map((b) => b.place.lon), bearings.map((b) => b.place.lat)];
   const [west, south] = [Math.min(...lons), Math.min(...lats)];
   const squeeze = Math.cos((south * Math.PI) / 180);
-  const span = Math.max((Math.max(...lons) - west) * squeeze, (Math.max(...lats) - south) * (WIDTH / HEIGHT), 1e-4);
+  const span = Math.max(
+    (Math.max(...lons) - west) * squeeze,
+    (Math.max(...lats) - south) * ((WIDTH - 2 * MARGIN) / (HEIGHT - 2 * MARGIN)),
+    1e-4,
+  );
   const scale = (WIDTH - 2 * MARGIN) / span;
   const at = (lat: number, lon: number) => [MARGIN + (lon - west) * squeeze * scale, HEIGHT - MARGIN - (lat - south) * scale] as const;
   const outliers = bearings.filter((b) => b.outlier).length;

@@ -7,6 +7,7 @@ import { live, serverNowMs } from "../state/connection";
 import { craftStatus, telemetry } from "../state/heard";
 import { emptySeries, extend, type Series } from "../state/series";
 import { settings } from "../state/settings";
+import { autopilotWords } from "../state/words";
 import { formatAge, formatBearing, formatLength, formatNumber, formatSpeed } from "../units/quantities";
 import { Chart } from "./Chart";
 import { Payloads } from "./Payloads";
@@ -30,7 +31,7 @@ function Values() {
   const position = ageS(value?.position_age_s, at, now);
   const heard = ageS(craft?.value.receiver_age_s, craft?.atMs ?? null, now);
   const rows: Row[] = [
-    { label: "instruments.autopilot", value: value?.autopilot ?? null, age: ageS(0, at, now) },
+    { label: "instruments.autopilot", value: value ? autopilotWords(value.autopilot) : null, age: ageS(0, at, now) },
     { label: "instruments.mode", value: value?.mode ?? null, age: ageS(value?.mode_age_s, at, now) },
     {
       label: "instruments.armed",
@@ -52,7 +53,7 @@ function Values() {
     },
     {
       label: "instruments.power",
-      value: craft?.value.receiver_power_db == null ? null : `${formatNumber(craft.value.receiver_power_db, 1)} dB`,
+      value: craft?.value.receiver_power_db == null ? null : `${formatNumber(craft.value.receiver_power_db, 1)}\u00a0dB`,
       age: heard,
     },
     ...(craft?.value.settling_samples

@@ -7,6 +7,7 @@ import { slideNext } from "../commands/suggested";
 import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
+import type { CheckFact } from "../wire";
 import { ProblemNote } from "./ProblemNote";
 
 const checking = signal(false);
@@ -24,6 +25,9 @@ export async function runPreflight(missionId: string): Promise<void> {
     checking.value = false;
   }
 }
+
+/** What refuses the start stands first, then what to take note of. */
+const rank = (check: CheckFact): number => (check.ok ? 2 : check.blocking ? 0 : 1);
 
 export function PreflightPanel({ missionId }: { missionId: string }) {
   const { checks, preflightPassed, spec } = mission.value;
@@ -52,7 +56,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
           </p>
           <ul class="checks">
             {checks
-              .toSorted((a, b) => Number(a.ok) - Number(b.ok))
+              .toSorted((a, b) => rank(a) - rank(b))
               .map((check, i) => {
                 const remedy = reasonRemedy(check.reason);
                 const verdict = check.ok ? "ok" : check.blocking ? "notOk" : "warning";

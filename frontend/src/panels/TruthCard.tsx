@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import { tapping, tell, tellHere } from "../commands/truth";
 import { t } from "../i18n";
+import { chosenCard } from "../state/card";
 import { source } from "../state/connection";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
@@ -72,7 +73,7 @@ export function TruthCard() {
   if (!source.value?.keptByServer || missionId === null || (startedAt === null && bearings.length === 0)) return null;
   return (
     <section class="panel truth" data-testid="truth" aria-label={t("truth.title")}>
-      <details open={truth !== null || tapping.value}>
+      <details open={truth !== null || tapping.value || chosenCard.value === "truth"}>
         <summary>{t("truth.title")}</summary>
         <Told />
         <ProblemNote desk="truth" />

@@ -153,7 +153,10 @@ function wordsOf(event: Exclude<MissionEvent, EventOf<"priorities_changed">>, un
     case "resume_ordered":
       return t("event.resume_ordered", { by: byWords(event.by) });
     case "order_tried":
-      return t("event.order_tried", { order: t(`command.${event.order}`), way: t(`command.${event.way}`) });
+      return t(event.way === event.order ? "event.order_tried" : "event.order_tried.instead", {
+        order: t(`command.${event.order}`),
+        way: t(`command.${event.way}`),
+      });
     case "order_not_done":
       return t("event.order_not_done", {
         order: t(`command.${event.order}`),
@@ -161,7 +164,10 @@ function wordsOf(event: Exclude<MissionEvent, EventOf<"priorities_changed">>, un
         way: t(`command.${event.next_way}`),
       });
     case "order_done":
-      return t("event.order_done", { order: t(`command.${event.order}`), way: t(`command.${event.way}`) });
+      return t(event.way === event.order ? "event.order_done" : "event.order_done.instead", {
+        order: t(`command.${event.order}`),
+        way: t(`command.${event.way}`),
+      });
     case "abort_ordered":
       return t("event.abort_ordered", { by: byWords(event.by) });
     case "battery_countdown_started":

@@ -9,6 +9,11 @@ export const phaseName = (phase: MissionPhase): string => t(`phase.${phase}` sat
 
 export const checkName = (name: CheckFact["name"]): string => t(`check.${name}` satisfies MessageKey);
 
+const AUTOPILOTS = { px4: "PX4", ardupilot: "ArduPilot" } as const;
+
+export const autopilotWords = (kind: keyof typeof AUTOPILOTS | "unknown"): string =>
+  kind === "unknown" ? t("bar.unknown") : AUTOPILOTS[kind];
+
 /** Who took a bearing. */
 export function sourceName(source: BearingSource): string {
   switch (source.kind) {

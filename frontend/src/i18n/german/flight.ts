@@ -5,7 +5,7 @@ const LOOK = "Nach dem Fluggerät sehen und fortsetzen oder die Rückkehr befehl
 
 export const flight = {
   ordered: {
-    text: "{order?start=Gestartet|resume=Fortgesetzt|hold=Angehalten|return=Rückkehr befohlen|land=Landung befohlen|abort=Abgebrochen|override=Ort gewählt|accept=Ort angenommen|veto=Ort abgelehnt|automatic=Selbstannahme scharf geschaltet|exclude=Peilung weggelassen} durch {by}.",
+    text: "{order?start=Gestartet|resume=Fortgesetzt|hold=Angehalten|return=Rückkehr befohlen|land=Landung befohlen|abort=Abgebrochen|override=Ort gewählt|accept=Ort angenommen|veto=Ort abgelehnt|automatic=Automatisches Annehmen scharf geschaltet|exclude=Peilung weggelassen} durch {by}.",
     remedy: "",
   },
   proceeds: {
