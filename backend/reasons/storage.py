@@ -16,8 +16,8 @@ class DatabaseSilent:
     code: Literal["database_silent"] = "database_silent"
     english: ClassVar[Words] = Words(
         "The database does not answer: {detail}.",
-        "Check that it is running, and that its disk has room and can be written; what happens meanwhile is kept in the "
-        "spool on the disk.",
+        "Check that it is running, and that its disk has room and can be written; what happens meanwhile is kept in "
+        "the spool on the disk.",
     )
 
 
