@@ -3,6 +3,7 @@ import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { t } from "../i18n";
 import { SafetyBar } from "../panels/SafetyBar";
+import { followed, isGone } from "../state/gone";
 import { overlay } from "../state/overlay";
 import { type Route, route } from "../state/route";
 import { entered } from "../state/session";
@@ -47,12 +48,14 @@ function Lazy({ name, quiet = false, ...properties }: { name: keyof typeof loade
   }, [name]);
   if (state.failed) {
     return (
-      <p class="center" role="alert">
-        {t("app.loadFailed")}{" "}
-        <button type="button" onClick={() => location.reload()}>
-          {t("app.reload")}
-        </button>
-      </p>
+      <div class="center" role="alert">
+        <p>
+          {t("app.loadFailed")}{" "}
+          <button type="button" onClick={() => location.reload()}>
+            {t("app.reload")}
+          </button>
+        </p>
+      </div>
     );
   }
   const Shown = state.name === name ? state.page : null;
@@ -64,6 +67,23 @@ function Sheets() {
   const which = overlay.value;
   if (which !== "settings" && which !== "keys" && which !== "tour" && which !== "instruments") return null;
   return <Lazy name="sheets" quiet which={which} />;
+}
+
+function NoMission() {
+  return (
+    <div class="center" role="alert" data-testid="no-mission">
+      <p>
+        {t("app.noMission")}
+        <br />
+        <button type="button" onClick={() => location.reload()}>
+          {t("app.reload")}
+        </button>{" "}
+        <a class="button" href="#/">
+          {t("app.missions")}
+        </a>
+      </p>
+    </div>
+  );
 }
 
 export function App() {
@@ -80,9 +100,7 @@ export function App() {
   return (
     <>
       <SafetyBar />
-      <main>
-        <Lazy name={shown} route={current} key={shown} />
-      </main>
+      <main>{isGone(followed(current)) ? <NoMission /> : <Lazy name={shown} route={current} key={shown} />}</main>
       <Sheets />
     </>
   );

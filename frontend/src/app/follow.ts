@@ -1,6 +1,7 @@
 // The address says which mission is shown, hence which source speaks: one place decides, whatever page comes or goes.
 import { effect } from "@preact/signals";
 import { live, source } from "../state/connection";
+import { followed, isGone } from "../state/gone";
 import { open } from "../state/open";
 import { route } from "../state/route";
 import { entered, refreshSession } from "../state/session";
@@ -13,9 +14,8 @@ export function followRoute(): () => void {
       source.value = null;
       return;
     }
-    const { value } = route;
-    const shown = value.page === "mission" || value.page === "area" || value.page === "bearings";
-    const wanted = shown ? value.missionId : null;
+    const shown = followed(route.value);
+    const wanted = isGone(shown) ? null : shown;
     const now = source.peek();
     if (now === null || now.missionId !== wanted) open(sourceFor(wanted));
   });

@@ -4,6 +4,8 @@ import type { MessageKey } from ".";
 export const de: Record<MessageKey, string> = {
   "app.loading": "Die Konsole wird geladen …",
   "app.loadFailed": "Ein Teil der Seite ließ sich nicht laden. Abbruch, Halten und Rückkehr wirken trotzdem.",
+  "app.noMission": "Diese Mission gibt es hier nicht: Ihre Adresse stimmt nicht, oder sie wurde endgültig gelöscht.",
+  "app.missions": "Alle Missionen",
   "app.reload": "Neu laden",
 
   "bar.label": "Sicherheit",

@@ -3,6 +3,8 @@
 export const en = {
   "app.loading": "Loading the console …",
   "app.loadFailed": "A part of the page could not be loaded. Abort, hold and return still work.",
+  "app.noMission": "There is no such mission here: its address is wrong, or it was deleted for good.",
+  "app.missions": "All missions",
   "app.reload": "Load again",
 
   "bar.label": "Safety",

@@ -8,7 +8,7 @@ class FakeSocket {
   static made: FakeSocket[] = [];
   binaryType = "";
   onopen: (() => void) | null = null;
-  onclose: (() => void) | null = null;
+  onclose: ((e: { code: number }) => void) | null = null;
   onmessage: ((e: { data: string }) => void) | null = null;
   constructor(readonly url: string) {
     FakeSocket.made.push(this);
@@ -43,7 +43,7 @@ describe("the live source", () => {
     expect(FakeSocket.made[0]!.url).toContain("lite=1");
     expect(FakeSocket.made[0]!.url).toContain("after=0");
     for (const recorded of record(someBearing(), someBearing())) FakeSocket.made[0]!.tell({ type: "event", recorded });
-    FakeSocket.made[0]!.onclose?.();
+    FakeSocket.made[0]!.onclose?.({ code: 1006 });
     await vi.advanceTimersByTimeAsync(10_000);
     expect(FakeSocket.made[1]!.url).toContain("after=2");
   });
@@ -90,8 +90,16 @@ describe("the live source", () => {
   it("does not connect again once it was stopped", async () => {
     const source = start();
     source.stop();
-    FakeSocket.made[0]!.onclose?.();
+    FakeSocket.made[0]!.onclose?.({ code: 1006 });
     await vi.advanceTimersByTimeAsync(30_000);
+    expect(FakeSocket.made).toHaveLength(1);
+  });
+
+  it("says once that there is no such mission, and asks no more", async () => {
+    start();
+    FakeSocket.made[0]!.onclose?.({ code: 4404 });
+    await vi.advanceTimersByTimeAsync(30_000);
+    expect(heard.at(-1)).toEqual({ type: "gone", missionId: "m" });
     expect(FakeSocket.made).toHaveLength(1);
   });
 

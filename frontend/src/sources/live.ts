@@ -10,6 +10,7 @@ const LONGEST_RETRY_MS = 8_000;
 const SILENCE_MS = 6_000;
 /** Events that were promised by the greeting but have not come after this long are asked for again. */
 const BACKLOG_MS = 8_000;
+const NO_SUCH_MISSION = 4404;
 
 export function retryDelayMs(attempt: number, random: number): number {
   const ceiling = Math.min(LONGEST_RETRY_MS, FIRST_RETRY_MS * 2 ** attempt);
@@ -75,8 +76,12 @@ export class LiveSource implements Source {
         this.listener({ type: "unreadable", detail: error instanceof Error ? error.message : String(error) });
       }
     };
-    socket.onclose = () => {
-      if (this.socket === socket) this.reconnect();
+    socket.onclose = ({ code }: CloseEvent) => {
+      if (this.socket !== socket) return;
+      if (code === NO_SUCH_MISSION && this.missionId !== null) {
+        this.stop();
+        this.listener({ type: "gone", missionId: this.missionId });
+      } else this.reconnect();
     };
   }
 

@@ -19,7 +19,13 @@ export interface UnreadableMessage {
   detail: string;
 }
 
-export type SourceMessage = LiveMessage | BeliefMessage | LinkMessage | UnreadableMessage;
+/** The server has no such mission; the source says nothing more. */
+export interface GoneMessage {
+  type: "gone";
+  missionId: string;
+}
+
+export type SourceMessage = LiveMessage | BeliefMessage | LinkMessage | UnreadableMessage | GoneMessage;
 
 export interface Source {
   readonly missionId: string | null;

@@ -2,6 +2,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import type { Source, SourceMessage } from "../sources/source";
 import { moveClock, nowMs } from "./clock";
+import { noteGone } from "./gone";
 import { emptyLive, type LiveState, reduceLive } from "./live";
 
 export const live = signal<LiveState>(emptyLive);
@@ -58,6 +59,10 @@ function flush(): void {
 }
 
 function receive(message: SourceMessage): void {
+  if (message.type === "gone") {
+    noteGone(message.missionId);
+    return;
+  }
   pending.push(message);
   if (isAwaited(message)) {
     flush();

@@ -110,5 +110,7 @@ export function reduceLive(state: LiveState, message: SourceMessage, nowMs: numb
       return { ...heard, beliefs: withEntry(heard.beliefs, message.frame.emitterId, message.frame) };
     case "unreadable":
       return { ...heard, unreadable: heard.unreadable + 1 };
+    case "gone":
+      return heard;
   }
 }
