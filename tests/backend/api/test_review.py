@@ -49,6 +49,8 @@ SPEC = MissionSpec(
     area=Polygon(coordinates=[[corner(-150, 0), corner(150, 0), corner(150, 200), corner(-150, 200), corner(-150, 0)]]),
     emitters=[EmitterSpec(), EmitterSpec(emitter_id="tag", frequency_hz=150e6, label="tag 7")],
 )
+"""Its name is one of before drafts were held to the rule of labels."""
+DRAFT = SPEC.model_copy(update={"name": "Owl <7> & friends"}).model_dump(mode="json")
 TASK, TAG_TASK = localization(SPEC, HOME), localization(SPEC, HOME, "tag")
 
 
@@ -236,8 +238,7 @@ async def test_before_the_first_bearing_there_is_the_prior(client, flown):
 
 
 async def test_a_draft_shows_its_prior(client):
-    spec = SPEC.model_dump(mode="json")
-    mission_id = (await client.post("/api/missions", json=spec)).json()["mission_id"]
+    mission_id = (await client.post("/api/missions", json=DRAFT)).json()["mission_id"]
     reply = await client.get(f"/api/missions/{mission_id}/beliefs")
     assert reply.status_code == 200
     assert b'"seq":0' in reply.content
@@ -307,7 +308,7 @@ async def test_the_json_file_is_the_whole_journal(client, flown, services):
 
 
 async def test_every_format_takes_a_mission_that_never_flew(client):
-    mission_id = (await client.post("/api/missions", json=SPEC.model_dump(mode="json"))).json()["mission_id"]
+    mission_id = (await client.post("/api/missions", json=DRAFT)).json()["mission_id"]
     for name in ("geojson", "kml", "csv", "json"):
         assert (await client.get(f"/api/missions/{mission_id}/export/{name}")).status_code == 200
     assert (await client.get(f"/api/missions/{mission_id}/export/exe")).status_code == 422

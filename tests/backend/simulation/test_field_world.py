@@ -86,7 +86,7 @@ def test_along_a_way_is_heard_what_a_receiver_hears_point_by_point():
     link = RadioLink(replace(field.world, seed=seed), FREQUENCY_HZ)
     for k, sample in enumerate(heard):
         x, y = 10.0 * k, 3.0 * k
-        link.world = field._at(x, y)
+        link.world = field.at(x, y)
         pose = Pose(FRAME.to_geo(x, y), HEIGHT_M, 7.0 * k, (float(lean[k, 0]), float(lean[k, 1])))
         assert link.power_dbm(k / 10.0, pose) == (pytest.approx(sample.power_db, abs=1e-9), sample.clipped)
 
