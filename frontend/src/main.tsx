@@ -2,7 +2,6 @@ import { render } from "preact";
 import { App } from "./app/App";
 import { followRoute, followSession } from "./app/follow";
 import { watchKeys } from "./app/keys";
-import { keepSending } from "./commands/reportBearings";
 import { report } from "./commands/send";
 import { t } from "./i18n";
 import { watchAlerts } from "./panels/alertSounds";
@@ -30,6 +29,12 @@ if (import.meta.env.PROD && "serviceWorker" in navigator) {
   // where a browser allows none (plain http to another machine) the page works all the same
   setTimeout(() => navigator.serviceWorker.register("./sw.js").catch(() => undefined), KEEP_AFTER_MS);
 }
+// bearings that a phone took while it had no link go out whatever page it shows next; the page of bearings sends its own
+setTimeout(() => {
+  import("./commands/reportBearings").then(
+    ({ keepSending }) => keepSending(),
+    () => undefined,
+  );
+}, KEEP_AFTER_MS);
 followSession();
 followRoute();
-keepSending();

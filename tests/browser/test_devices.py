@@ -124,6 +124,7 @@ def test_a_flight_is_replayed_supposed_compared_and_printed_with_a_thumb(
     expect(part("what-if-steps")).to_be_visible()
     part("variant-name").fill("a duller ear")
     part("keep-variant").tap()
+    expect(page.get_by_text("Kept as “a duller ear”")).to_be_visible()
     part("open-compare").tap()
     expect(part("compare-row")).to_have_count(2)
     expect(part("compare-line")).to_have_count(2)

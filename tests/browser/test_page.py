@@ -73,6 +73,7 @@ def test_the_safety_bar_is_small_and_needs_neither_webgl_nor_the_rest(server: Se
         "FlyPage",
         "FlyMap",
         "createMap",
+        "reportBearings",
         "EditMap",
         "maplibre",
         "gridNotation",

@@ -105,7 +105,7 @@ export function countAgain(bearingId: string): void {
   void sendWaiting();
 }
 
-/** As long as the page is open, whatever it shows. */
+/** Until what it returns is called. Two at once send nothing twice. */
 export function keepSending(): () => void {
   const again = setInterval(() => void sendWaiting(), AGAIN_MS);
   const online = () => void sendWaiting();

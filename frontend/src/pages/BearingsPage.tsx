@@ -1,6 +1,6 @@
 // For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { backspace, countAgain, queue, report, reporting, unreached } from "../commands/reportBearings";
+import { backspace, countAgain, keepSending, queue, report, reporting, unreached } from "../commands/reportBearings";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { AdviceCard } from "../panels/AdviceCard";
@@ -176,6 +176,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const [emitter, setEmitter] = useState<string | null>(null);
   const who = useRef<HTMLDetailsElement>(null);
   const gps = useGps(setHere);
+  useEffect(() => keepSending(), []);
   useEffect(() => stopCompass, []);
   const emitters = spec?.emitters ?? [];
   const heard = emitter ?? emitters[0]?.emitter_id ?? null;
