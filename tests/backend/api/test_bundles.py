@@ -13,6 +13,7 @@ import zipfile
 import zlib
 from collections.abc import Callable
 from typing import Any
+from unittest.mock import Mock
 
 import httpx
 import numpy as np
@@ -219,12 +220,8 @@ async def test_a_mission_whose_ways_find_no_room_comes_in_whole_later(client, fl
     files.directory.mkdir()
     files.path(ID).write_bytes(ways_of())
     content = await exported(client, flown)
-
-    def full(*_: object) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
     with monkeypatch.context() as disk:
-        disk.setattr(WaysFolder, "keep", full)
+        disk.setattr(WaysFolder, "keep", Mock(side_effect=OSError(errno.ENOSPC, "No space left on device")))
         assert (await there.post("/api/bundles", content=content)).status_code == 507
     assert (await there.get("/api/missions")).json()["missions"] == []
     assert (await there.post("/api/bundles", content=content)).status_code == 201
