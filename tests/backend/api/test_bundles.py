@@ -195,9 +195,7 @@ def ways_of(**changes: Any) -> bytes:
     return MissionWays.model_validate({"name": "roads", "features": features} | changes).model_dump_json().encode()
 
 
-async def test_the_ways_of_a_mission_come_with_it_and_a_bundle_without_them_is_as_it_was(
-    client, flown, elsewhere, settings
-):
+async def test_ways_come_in_a_bundle_which_without_them_is_as_it_was(client, flown, elsewhere, settings):
     there, _ = elsewhere
     assert json.loads(files_of(await exported(client, flown))["bundle.json"])["version"] == 1
     files = WaysFiles.of_settings(settings)
