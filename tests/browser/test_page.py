@@ -81,9 +81,6 @@ def test_the_safety_bar_is_small_and_needs_neither_webgl_nor_the_rest(server: Se
         "pages.en",
         "truth",
         "review",
-        "WaysCard",
-        "areas",
-        "polar",
     )
 
     def lose(route: Route) -> None:

@@ -5,6 +5,7 @@ import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import type { Problem } from "../wire";
+import "../style/people.css";
 
 interface Properties {
   title: string;

@@ -19,6 +19,8 @@ import { type Card, chosenCard } from "../state/card";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
 import "../style/review.css";
+import "../style/sweep.css";
+import "../style/what-if.css";
 
 const GAP_PX = 8;
 

@@ -10,6 +10,7 @@ import type { Problem } from "../wire";
 import { Invitations } from "./Invitations";
 import { Machines } from "./Machines";
 import { OwnPassword } from "./OwnPassword";
+import "../style/people.css";
 import { RolePick } from "./RolePick";
 
 const named = (words: string, names: readonly [RegExp, string][]) => names.find(([pattern]) => pattern.test(words))?.[1];
