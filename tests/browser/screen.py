@@ -68,12 +68,26 @@ class Screen:
         self.page.keyboard.press("Alt+Shift+H")
         self.expect_phase("hold")
 
+    def offer_resume(self) -> None:
+        """Ask for its slider, again where a value was too old for a moment: the page takes the slider back then."""
+        slider = self.part("resume-slider")
+        for _ in range(10):
+            self.part("resume").click()
+            try:
+                expect(slider).to_be_visible(timeout=1000)
+                self.page.wait_for_timeout(100)
+            except AssertionError:
+                continue
+            if slider.is_visible():
+                return
+        expect(slider).to_be_visible()
+
     def resume(self) -> None:
-        self.part("resume").click()
+        self.offer_resume()
         self.slide("resume-slider")
         while self.refused("problem-bar"):
             self.page.wait_for_timeout(1000)
-            self.part("resume").click()
+            self.offer_resume()
             self.slide("resume-slider")
 
     def refused(self, problem: str) -> bool:

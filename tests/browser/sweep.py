@@ -68,7 +68,7 @@ def checked(screen: Screen) -> None:
 
 def ready_to_resume(screen: Screen) -> None:
     screen.map_ready()
-    screen.part("resume").click()
+    screen.offer_resume()
 
 
 def proposing(screen: Screen) -> None:

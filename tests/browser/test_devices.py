@@ -174,8 +174,10 @@ def test_a_flight_is_held_sent_elsewhere_and_resumed_with_a_thumb(
     expect(part("proposal")).to_have_count(0)
     chosen = [event for event in server.events(mission) if event["kind"] == "plan_chosen"]
     assert chosen[-1]["source"] == "operator"
-    if screen.phase() == "hold":
-        part("resume").tap()
+    screen.offer_resume()
+    slide(screen, "resume-slider")
+    while screen.refused("problem-bar"):
+        screen.offer_resume()
         slide(screen, "resume-slider")
     screen.expect_phase("planning", "flying", "measuring")
     card(screen, "estimate")
