@@ -78,6 +78,7 @@ class FieldOptions:
     """turns: once around at every place, or as far as needed. turn_rate_deg_s: of a sweep. compass_sd_deg: of the
     flights' heading errors; compass_deg: their heading error, to either side, instead. listens: where. antenna: that is
     flown. errors: of bearings, as the specification has them. sigma_factor: what every bearing's sigma is widened by.
+    flights: of the craft before these, from whose bearings it learns (field_lessons).
     """
 
     planner: str = "crossfix"
@@ -89,6 +90,7 @@ class FieldOptions:
     antenna: Antenna = "yagi"
     errors: Errors = "joint"
     sigma_factor: float = 1.0
+    flights: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,9 +168,13 @@ class FieldStudy:
 
     def fly(self, seed: int) -> FieldMission:
         """One mission, until it says localized or has taken its last bearing."""
+        return self.flown(seed)[0]
+
+    def flown(self, seed: int) -> tuple[FieldMission, GridBelief]:
+        """With the belief at its end."""
         return self._gyrated(seed) if self.options.planner == GYRATION else self._stopping(seed)
 
-    def _stopping(self, seed: int) -> FieldMission:
+    def _stopping(self, seed: int) -> tuple[FieldMission, GridBelief]:
         """Turns are made at places."""
         task, rate, field = self.task, self.options.turn_rate_deg_s, self.field(seed)
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
@@ -218,14 +224,14 @@ class FieldStudy:
                     break
                 retakes += 1
             fact, belief = task.belief_fact(measured)
-        return self._ended(field, fact, belief, measured, time_s, retakes, turned_deg + way_deg)
+        return self._ended(field, fact, belief, measured, time_s, retakes, turned_deg + way_deg), belief
 
     def _passes(self, leg: HeardOnTheWay, measured: Sequence[BearingMeasured], fact: BeliefUpdated) -> bool:
         """Whether a mission that never stops does not turn after this leg."""
         asked = self.spec.sensor.never_stop and bool(measured) and leg.tells
         return asked and isinstance(turn_or_pass(fact, [leg]), WayToldEnough)
 
-    def _gyrated(self, seed: int) -> FieldMission:
+    def _gyrated(self, seed: int) -> tuple[FieldMission, GridBelief]:
         """The nose goes round all the time, and the craft flies on meanwhile."""
         field, task, rng = self.field(seed), self.task, np.random.default_rng([seed, 3])
         measured, circles, nose_deg = list[BearingMeasured](), 0, 0.0
@@ -243,7 +249,8 @@ class FieldStudy:
             if isinstance(found, BearingMeasured):
                 measured.append(found)
                 fact, belief = task.belief_fact(measured)
-        return self._ended(field, fact, belief, measured, time_s, circles - len(measured), 360.0 * circles)
+        rejected = circles - len(measured)
+        return self._ended(field, fact, belief, measured, time_s, rejected, 360.0 * circles), belief
 
     def _ended(
         self,

@@ -10,6 +10,7 @@ import typer
 
 from backend.cli.edge import print_json, remark
 from backend.cli.field_legs import Listens
+from backend.cli.field_lessons import taught
 from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, Turns
 from backend.cli.field_summary import FieldSummary, summary
 from backend.simulation.field_world import Antenna
@@ -48,6 +49,7 @@ class FieldSetting:
     compass_sd_deg: float
     compass_deg: float | None
     antenna: str
+    flights: int
 
 
 def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, json_: bool) -> None:
@@ -80,6 +82,7 @@ def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, jso
                 setting.compass_sd_deg,
                 setting.compass_deg,
                 cast(Antenna, setting.antenna),
+                flights=setting.flights,
             ),
             runs,
             seed,
@@ -98,7 +101,7 @@ def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, jso
 
 
 def _row(options: FieldOptions, runs: int, seed: int) -> FieldSummary:
-    study = FieldStudy.of(options)
+    study = taught(FieldStudy.of(options), options.flights)
     flown: list[FieldMission] = []
     for number in range(seed, seed + runs):
         flown.append(study.fly(number))

@@ -102,6 +102,9 @@ def run(
         float | None, typer.Option(help="field-world: the compass' error instead, degrees to either side.")
     ] = None,
     antenna: Annotated[str, typer.Option(help="field-world: yagi, or wide: a beam of 86 degrees, not 68.")] = "yagi",
+    flights: Annotated[
+        int, typer.Option(min=0, help="field-world: of the craft before these, from whose bearings alone it learns.")
+    ] = 0,
     results: Directory = DEFAULT_DIRECTORY,
     json_: Annotated[
         bool, typer.Option("--json", help="Print one JSON object; a list of them when several cells were asked for.")
@@ -114,7 +117,7 @@ def run(
     if scenario is not None and FIELD_WORLD in scenario:
         try:
             ways = FieldWays(planner or ["crossfix"], turns or ["whole"], listens or ["places"])
-            setting = FieldSetting(turn_rate, compass_sd, compass_bias, antenna)
+            setting = FieldSetting(turn_rate, compass_sd, compass_bias, antenna, flights)
             _field_world(scenario, ways, setting, runs, seed, json_)
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)

@@ -23,6 +23,7 @@ from typing import cast, get_args
 
 import numpy as np
 
+from backend.cli.field_lessons import taught
 from backend.cli.field_missions import FieldMission, FieldOptions, FieldStudy
 from backend.cli.field_summary import summary
 from backend.simulation.field_world import Antenna
@@ -43,9 +44,12 @@ ROWS: Mapping[str, FieldOptions] = {
     "entropy_of_nine": FieldOptions("entropy_of_nine"),
     "random_walk": FieldOptions("random_walk"),
     "gyration": FieldOptions("gyration"),
+    "taught_whole": FieldOptions(flights=30),
+    "taught_swings": FieldOptions(turns="sector", listens="way_swinging", flights=30),
 }
-"""wedge: each bearing by itself, as before errors were estimated with the place; widened: its sigmas multiplied by what
-`WIDENINGS` has for the setting. wedge*1.5 is a row, too: multiplied by that."""
+"""taught: after thirty flights of the craft, which its bearings are learned from. wedge: each bearing by itself, as
+before errors were estimated with the place; widened: its sigmas multiplied by what `WIDENINGS` has for the setting.
+wedge*1.5 is a row, too: multiplied by that."""
 WIDENINGS = Path(__file__).parents[2] / "docs" / "measurements" / "study_field_widening.json"
 """How much wider a wedge has to be, for C95 at the claim to hold the truth as often as it says: as
 tests.benchmarks.field_widening found it, on seeds on which no row is flown."""
@@ -117,7 +121,8 @@ def flown(
         if missions is None or seed in missions:
             continue
         if (one, name) not in studies:
-            studies[one, name] = FieldStudy.of(one.options(name))
+            options = one.options(name)
+            studies[one, name] = taught(FieldStudy.of(options), options.flights)
         missions[seed] = studies[one, name].fly(seed)
         _keep(kept, one, name, missions[seed])
         print(f"{one.name}, {name}, {seed}: {missions[seed].time_s:.0f} s", file=sys.stderr, flush=True)
