@@ -1105,6 +1105,10 @@ export const de: Record<MessageKey, string> = {
   "calibration.craft": "Fluggerät",
   "calibration.antenna": "Antenne",
   "calibration.any": "alle",
+  "calibration.loading": "Liest die geprüften Missionen …",
+  "calibration.noneOfThese": "Keine geprüfte Mission hat dieses Fluggerät und diese Antenne.",
+  "calibration.nothingTold":
+    "Geprüfte Missionen: {missions}; nicht gefunden: {lost}. Keine hat eine Peilung zu einem Sender, dessen Ort bekannt ist; zu vergleichen ist nichts.",
   "calibration.empty": "Noch ist nichts geprüft. Öffnen Sie eine Mission, und sagen Sie unter „Gefunden?“, wo der Sender war.",
   "calibration.of": "Geprüfte Missionen: {missions}, mit {bearings} Peilungen; nicht gefunden: {lost}.",
   "calibration.held": "Traf zu",

@@ -446,6 +446,10 @@ export const pagesEn = {
   "calibration.craft": "Vehicle",
   "calibration.antenna": "Antenna",
   "calibration.any": "any",
+  "calibration.loading": "Reading the checked missions …",
+  "calibration.noneOfThese": "No checked mission has this vehicle and this antenna.",
+  "calibration.nothingTold":
+    "Missions checked: {missions}; not found: {lost}. None has a bearing to an emitter whose place is known, so there is nothing to compare.",
   "calibration.empty": "Nothing is checked yet. Open a mission and say under “Found it?” where the emitter was.",
   "calibration.of": "Missions checked: {missions}, with {bearings} bearings; not found: {lost}.",
   "calibration.held": "Was right",
