@@ -9,6 +9,7 @@ from screen import OpenScreen
 from served import Server
 
 from backend.events import Recorded
+from tests.browser.stock import stored
 from tests.browser.test_after_flight import bring_in, checked
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
@@ -24,7 +25,7 @@ def test_it_says_that_it_loads_and_then_that_there_is_nothing(server: Server, op
     held[0].continue_()
     expect(screen.part("calibration-nothing")).to_contain_text("Nothing is checked yet.")
     expect(screen.part("calibration-loading")).to_have_count(0)
-    flown = bring_in(server, [record for record in checked("not-there", 0.0) if record.event.kind != "truth_noted"])
+    flown = stored(server, "aborted")
     lost = {"emitter_id": "emitter-1", "place": None, "accuracy_m": None, "how": "typed"}
     httpx.put(f"{server.url.rstrip('/')}/api/missions/{flown}/truth", json=lost, timeout=60).raise_for_status()
     screen.page.reload()
