@@ -599,6 +599,10 @@ export const de: Record<MessageKey, string> = {
   "alerts.muted": "stumm",
 
   "menu.health": "Zustand des Servers",
+  "fly.unstored": "Nichts kann gespeichert werden.",
+  "fly.unstoredMeanwhile":
+    "Der Flug geht weiter und bleibt im Arbeitsspeicher. Peilungen, Schätzung und Ereignisse hier sind die von vorher; Ort, Akku und Befehle sind aktuell.",
+  "instruments.database.unstored": "nichts kann gespeichert werden",
   "health.title": "Zustand des Servers",
   "health.ok": "Alles antwortet.",
   "health.degraded": "Der Server arbeitet; etwas, das er braucht, nicht.",

@@ -183,6 +183,10 @@ export const pagesEn = {
   "area.noPlan": "No next place there: {reason}",
   "area.slide": "Slide to search here",
   "area.keep": "Keep the area",
+  "fly.unstored": "Nothing can be stored.",
+  "fly.unstoredMeanwhile":
+    "The flight goes on and is kept in memory. Bearings, estimate and log here are those from before; position, battery and orders are live.",
+  "instruments.database.unstored": "nothing can be stored",
   "health.title": "Server health",
   "health.ok": "Everything answers.",
   "health.degraded": "The server works; something that it needs does not.",

@@ -8179,7 +8179,8 @@ export interface components {
         };
         /**
          * @description Once a second, and when an order goes on: the mission in the air, None when none is, every craft there is, and
-         *     the server's own health.
+         *     the server's own health. database: "unstored" while the mission's facts can be stored nowhere: they are kept in
+         *     memory, and are shown once they are stored.
          */
         StatusMessage: {
             /**
@@ -8194,7 +8195,7 @@ export interface components {
             crafts: components["schemas"]["CraftStatusMessage"][];
             viewers: number;
             /** @enum {string} */
-            database: "ok" | "slow" | "lost";
+            database: "ok" | "slow" | "lost" | "unstored";
         };
         /** @description A fault of ours, not of the equipment; the log has the traceback. */
         StepBroke: {
