@@ -255,12 +255,13 @@ class CraftStatus:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """Once a second beside the facts: the mission that flies, if one does, and every craft there is."""
+    """Once a second beside the facts: the mission that flies, if one does, and every craft there is. database:
+    "unstored" while the mission's facts can be stored nowhere, and are therefore not shown."""
 
     mission_id: str | None
     phase: MissionPhase | None
     crafts: tuple[CraftStatus, ...]
-    database: Literal["ok", "slow", "lost"]
+    database: Literal["ok", "slow", "lost", "unstored"]
 
 
 class Publisher(Protocol):

@@ -71,7 +71,8 @@ class Settings(BaseSettings):
     disk_low_bytes: int = Field(default=200 * 2**20, ge=0)
 
     keep_sweeps_days: Annotated[float, Field(ge=0, le=36_500)] | None = None
-    """Raw sweeps of missions that ended longer ago are taken; None: kept for ever."""
+    """Raw sweeps of missions that ended longer ago are taken, once the server has also run on thirty days since it
+    found them so (on as many as this says, where that is fewer): its clock may be wrong. None: kept for ever."""
 
     overlays_max: int = Field(default=200, ge=0)
     overlays_max_bytes: int = Field(default=500 * 10**6, ge=0)

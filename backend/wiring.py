@@ -24,6 +24,7 @@ from backend.live.hub import Hub
 from backend.maps.terrain_folder import TerrainFolder
 from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
+from backend.reasons.datagrams import NoSearchFlies
 from backend.search.forecast import preview
 from backend.search.localization import localization
 from backend.search.reported import ReportedBearing, on_our_clock
@@ -76,23 +77,25 @@ def _warm_up() -> None:
 
 
 @asynccontextmanager
-async def _bearings_by_udp(settings: Settings, missions: MissionRoom, clock: ScaledClock) -> AsyncGenerator[None]:
-    """Raises ValueError when the port cannot be had."""
+async def _bearings_by_udp(
+    settings: Settings, missions: MissionRoom, clock: ScaledClock
+) -> AsyncGenerator[BearingFeed | None]:
+    """What listens, None without a port. Raises ValueError when the port cannot be had."""
     port = settings.bearings_udp_port
     if port is None:
-        yield
+        yield None
         return
 
     async def add(report: ReportedBearing) -> None:
         flying = missions.flights.active
         if flying is None:
-            raise DatagramRefused("no search flies")
+            raise DatagramRefused(NoSearchFlies())
         await missions.reports.add(flying.mission_id, on_our_clock(report, clock.now(), time.time()))
 
     feed = BearingFeed(add, time.time, time.monotonic)
     async with open_feed(feed, settings.bearings_udp_host, port) as (host, bound):
         log.warning("bearings are taken by UDP on %s, port %d", host, bound)
-        yield
+        yield feed
 
 
 def _warming() -> asyncio.Task[None]:
@@ -248,15 +251,16 @@ async def open_simulation(
                 warming = _warming()
             else:
                 await warming
-            services = Services(
-                missions, journal, hub, settings, clock.now, payload,
-                access=access, provider=provider, finder=finder, pattern=pattern,
-            )  # fmt: skip
-            try:
-                async with _bearings_by_udp(settings, missions, clock):
+            async with _bearings_by_udp(settings, missions, clock) as feed:
+                services = Services(
+                    missions, journal, hub, settings, clock.now, payload,
+                    bearings=None if feed is None else feed.health,
+                    access=access, provider=provider, finder=finder, pattern=pattern,
+                )  # fmt: skip
+                try:
                     yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
-            finally:
-                await services.close()
+                finally:
+                    await services.close()
         finally:
             in_flight = missions is not None and missions.flights.active is not None
             if missions is not None:

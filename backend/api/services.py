@@ -17,7 +17,7 @@ from backend.settings import Settings
 from backend.store.iq_folder import IqFolder
 from backend.store.journal import SqlJournal
 from backend.store.told_folder import ToldFolder
-from backend.wire.health import StockKind
+from backend.wire.health import BearingsUdpHealth, StockKind
 from backend.workers import Workers
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.payload.session import PayloadHub
@@ -38,7 +38,8 @@ class Services:
 
     now: UTC epoch seconds of the mission's clock. wall: of the machine's, which may be set, or go on while the machine
     sleeps: the mission's does neither. planning: what-if questions are answered one at a time, so that they never take
-    the planner's threads from the flight. payload: None where no companion computer may connect.
+    the planner's threads from the flight. payload: None where no companion computer may connect. bearings: how what
+    comes by UDP is, None where no port is open.
     beside: short work on missions runs in one thread at a time, since each more takes the interpreter from the flight.
     workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
     stocks: what comes from outside, and how much of it may be kept. iq: of recordings that came as SigMF.
@@ -55,6 +56,7 @@ class Services:
     finder: DirectionFinder = field(kw_only=True)
     pattern: AntennaPattern = field(kw_only=True)
     payload: PayloadHub | None = None
+    bearings: Callable[[], BearingsUdpHealth] | None = field(default=None, kw_only=True)
     provider: Provider | None = field(default=None, kw_only=True)
     workers: Workers = field(default_factory=Workers)
     desk: Workers = field(default_factory=lambda: Workers(time_s=DESK_S, memory_bytes=DESK_BYTES))

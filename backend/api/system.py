@@ -43,6 +43,7 @@ async def health(services: ServicesDep) -> Health:
         disk_free_bytes=free_bytes(services),
         keep_sweeps_days=settings.keep_sweeps_days,
         stocks=[stock.health() for stock in services.stocks.values()],
+        bearings_udp=None if services.bearings is None else services.bearings(),
         simulated=settings.simulated,
         time_factor=settings.time_factor,
     )

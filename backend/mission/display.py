@@ -57,7 +57,7 @@ class Display:
             mission_id=None if active is None else active.mission_id,
             phase=None if active is None else active.state.phase,
             crafts=tuple(self._craft(craft) for craft in self.equipment.crafts.values()),
-            database="lost" if failing else self.equipment.database(),
+            database="unstored" if failing else self.equipment.database(),
         )
 
     def _craft(self, craft: CraftEquipment) -> CraftStatus:

@@ -107,7 +107,8 @@ class Drafts:
             if search.deleted:
                 raise MissionConflict(WasDeleted())
             if upload.recording.bearings:
-                found = await asyncio.to_thread(bearing_facts, mission_id, search, upload, by)
+                alone = runner is None  # in flight its runner makes the belief
+                found = await asyncio.to_thread(bearing_facts, mission_id, search, upload, by, believed=alone)
             else:
                 found = await asyncio.to_thread(
                     import_facts, mission_id, search, upload, craft.finder, craft.pattern, by

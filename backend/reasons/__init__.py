@@ -14,6 +14,7 @@ from typing_extensions import TypeAliasType
 from backend.reasons.access import AccessReason
 from backend.reasons.adapter import ByOneAdapter
 from backend.reasons.checks import CheckReason
+from backend.reasons.datagrams import DatagramReason
 from backend.reasons.flight import FlightReason, OrderName, Way
 from backend.reasons.maps import MapReason
 from backend.reasons.refusals import RefusalReason
@@ -180,6 +181,7 @@ ReasonUnion = TypeAliasType(
         | HardwareReason
         | AccessReason
         | CheckReason
+        | DatagramReason
         | FlightReason
         | MapReason
         | RefusalReason

@@ -25,8 +25,9 @@ from hardware.readings import Place
 LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
 
 
-def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) -> Import:
-    """Every bearing of the emitter, and the belief after the last. Raises MissionInputError."""
+def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, *, believed: bool) -> Import:
+    """Every bearing of the emitter and, where nobody else makes it, the belief after the last (believed): all bearings
+    are weighed again at each of them, which takes a processor most of a minute for 150. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
     upload = replace(upload, emitter_id=_emitter_id(mission, upload))
     emitter, remarks, last = begun(state, upload, len(recording.bearings))
@@ -48,6 +49,8 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
         for number, (one, at_s) in enumerate(zip(sure, times, strict=True), start=last + 1)
     ]
     begins = import_fact(upload, emitter, by, first_s, remarks, sweep_ids=[], antenna=None)
+    if not believed:
+        return Import((begins, *facts), ())
     return Import((begins, *with_beliefs(state, emitter.emitter_id, facts, first_s, each=False)), ())
 
 

@@ -64,7 +64,7 @@ class DatabaseReport:
     (kept in a file)."""
 
     state: Literal["ok", "slow", "lost"]
-    reason: Unanswered | DatabaseSlow | DiskLow | None
+    reason: Unanswered | NothingStores | DatabaseSlow | DiskLow | None
     spooled: int
     refused: int
 
@@ -92,6 +92,7 @@ class Delivery:
         self._lock = asyncio.Lock()
         self._wake = asyncio.Event()
         self._fault: Unanswered | None = None
+        self._spool_fault: str | None = None
         self._answers = True
         self._at_once = DRAIN_BATCH
         self._took_s = 0.0
@@ -134,8 +135,9 @@ class Delivery:
             try:
                 await asyncio.to_thread(self._spool.append, entry.encode())
             except SpoolFull as error:
-                fault = "it still takes what waited" if self._fault is None else _words(self._fault)
-                raise JournalUnavailable(NothingStores(fault, str(error))) from error
+                self._spool_fault = str(error)
+                raise JournalUnavailable(self._nothing_stores(self._spool_fault)) from error
+            self._spool_fault = None
             self.waiting.append(entry)
             self._wake.set()
 
@@ -235,11 +237,23 @@ class Delivery:
                 self.waiting.popleft()
         async with self._lock:
             if not self.waiting:
-                await asyncio.to_thread(self._spool.clear)
+                await self._clear_spool()
                 if self._fault is not None:
                     log.warning("%d spooled entries stored: nothing waits any more", drained)
                 self._fault = None
                 self._settled()
+
+    async def _clear_spool(self) -> None:
+        """Raises DatabaseAway: who answers a question, on a disk that cannot be written, is not back."""
+        try:
+            await asyncio.to_thread(self._spool.clear)
+        except OSError as error:
+            self._spool_fault = error.strerror or why(error)
+            raise DatabaseAway(self._fault or DatabaseSilent(self._spool_fault)) from error
+        self._spool_fault = None
+
+    def _nothing_stores(self, spool: str) -> NothingStores:
+        return NothingStores("it still takes what waited" if self._fault is None else _words(self._fault), spool)
 
     async def _write_or_set_aside(self, entry: Entry) -> None:
         try:
@@ -266,6 +280,8 @@ class Delivery:
     def report(self) -> DatabaseReport:
         """From what the last attempts showed; asks nobody."""
         waiting = len(self.waiting)
+        if self._fault is not None and self._spool_fault is not None:
+            return DatabaseReport("lost", self._nothing_stores(self._spool_fault), waiting, self._refused)
         if self._fault is not None and not isinstance(self._fault, DatabaseSilent):
             return DatabaseReport("slow", self._fault, waiting, self._refused)
         if self._fault is not None and not self._answers:

@@ -12,7 +12,7 @@ from sqlalchemy.exc import DBAPIError
 
 from backend.reasons.storage import AnotherServer, DatabaseLater, DatabaseUnfit, ForeignSpool
 from backend.settings import Settings
-from backend.store.days_deleted import DaysDeleted
+from backend.store.days_seen import DaysSeen
 from backend.store.engine import LaterSchema, make_engine, migrate
 from backend.store.iq_folder import IqFolder
 from backend.store.journal import SqlJournal
@@ -95,8 +95,8 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
         await journal.start_up()
         beside.append(asyncio.create_task(journal.run()))
         others = ToldFolder.of_settings(settings), WaysFiles.of_settings(settings)
-        days, iq = DaysDeleted.of_settings(settings), IqFolder.of_settings(settings)
-        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, days, iq, *others)))
+        seen, iq = (DaysSeen.deleted(settings), DaysSeen.old(settings)), IqFolder.of_settings(settings)
+        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, seen, iq, *others)))
         yield journal
     finally:
         for task in beside:

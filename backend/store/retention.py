@@ -18,7 +18,7 @@ from sqlalchemy import ColumnElement, delete, func, select, true, tuple_
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.ports import TrackPoint
-from backend.store.days_deleted import DaysDeleted
+from backend.store.days_seen import DaysSeen
 from backend.store.digest import to_us
 from backend.store.iq_folder import IqFolder
 from backend.store.paths import MOST_POINTS, packed_path
@@ -28,6 +28,9 @@ log = logging.getLogger("crossfix.store")
 
 DELETED_DAYS = 30.0
 """For this many days a deleted mission can be restored."""
+SEEN_OLD_DAYS = 30.0
+"""On so many days, or on as many as the rule itself has, the server runs on before it takes raw sweeps that are old by
+its clock, which may be wrong."""
 AT_ONCE = 50
 """Sweeps in one transaction: a flight that writes meanwhile waits for no more than that."""
 PAUSE_S = 0.05
@@ -51,28 +54,39 @@ def _old(keep_days: float, now: datetime) -> ColumnElement[bool]:
     return missions.c.ended_at_us.is_not(None) & (missions.c.ended_at_us < before) & ~missions.c.flying
 
 
+def _old_among(keep_days: float, now: datetime, among: Collection[str] | None) -> ColumnElement[bool]:
+    old = _old(keep_days, now)
+    return old if among is None else old & missions.c.mission_id.in_(among)
+
+
 async def old_sweeps(engine: AsyncEngine, keep_days: float, now: datetime) -> Thinned:
     """What the rule would take. Raises what the driver raises."""
+    return await _counted(engine, _old(keep_days, now))
+
+
+async def _counted(engine: AsyncEngine, old: ColumnElement[bool]) -> Thinned:
     query = select(
         func.count(sweeps.c.mission_id.distinct()),
         func.count(),
         func.coalesce(func.sum(func.length(sweeps.c.samples)), 0),
-    ).where(sweeps.c.mission_id == missions.c.mission_id, _old(keep_days, now))
+    ).where(sweeps.c.mission_id == missions.c.mission_id, old)
     async with engine.connect() as connection:
         of, count, size = (await connection.execute(query)).one()
     return Thinned(int(of), int(count), int(size))
 
 
-async def thin(engine: AsyncEngine, keep_days: float, now: datetime) -> Thinned:
-    """Take the raw sweeps that are older than the rule, a few at a time. Raises what the driver raises."""
-    found = await old_sweeps(engine, keep_days, now)
+async def thin(engine: AsyncEngine, keep_days: float, now: datetime, among: Collection[str] | None = None) -> Thinned:
+    """Take the raw sweeps that are older than the rule, a few at a time. among: of these missions only; None: of
+    whichever. Raises what the driver raises."""
+    old = _old_among(keep_days, now, among)
+    found = await _counted(engine, old)
     writer = engine.execution_options(write=True)
     taken = 0
     while taken < found.sweeps:
         async with writer.begin() as connection:
             chosen = (
                 select(sweeps.c.mission_id, sweeps.c.sweep_id)
-                .where(sweeps.c.mission_id == missions.c.mission_id, _old(keep_days, now))
+                .where(sweeps.c.mission_id == missions.c.mission_id, old)
                 .limit(AT_ONCE)
             )
             keys = [tuple(row) for row in await connection.execute(chosen)]
@@ -177,10 +191,12 @@ async def forget_gone(engine: AsyncEngine, beside: Beside) -> list[str]:
     return await _forget(engine, beside, true())
 
 
-async def thin_iq(engine: AsyncEngine, iq: IqFolder, keep_days: float | None, now: datetime) -> list[str]:
+async def thin_iq(
+    engine: AsyncEngine, iq: IqFolder, keep_days: float | None, now: datetime, among: Collection[str] | None = None
+) -> list[str]:
     """Take the IQ of missions that are older than the rule, and of those that are gone. Their ids. Raises what the
-    driver raises. keep_days None: IQ of missions that are there is kept for ever."""
-    return await _forget(engine, iq, true() if keep_days is None else ~_old(keep_days, now))
+    driver raises. keep_days None: IQ of missions that are there is kept for ever. among: as in `thin`."""
+    return await _forget(engine, iq, true() if keep_days is None else ~_old_among(keep_days, now, among))
 
 
 async def _forget(engine: AsyncEngine, beside: Beside, stays: ColumnElement[bool]) -> list[str]:
@@ -197,28 +213,33 @@ async def _forget(engine: AsyncEngine, beside: Beside, stays: ColumnElement[bool
 
 
 async def keep_thin(
-    engine: AsyncEngine, keep_days: float | None, days: DaysDeleted, iq: IqFolder, *others: Beside
+    engine: AsyncEngine, keep_days: float | None, seen: tuple[DaysSeen, DaysSeen], iq: IqFolder, *others: Beside
 ) -> None:
     """Beside a running server: soon after its start, then every few hours. Runs until cancelled; no error ends it.
-    keep_days None: raw sweeps are kept for ever; paths are packed all the same. others: kept as long as the mission.
+    keep_days None: raw sweeps are kept for ever; paths are packed all the same. seen: where days are counted for
+    deleted missions, and for those whose sweeps are old. others: kept as long as the mission.
 
     The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it. Since it may be wrong by
-    years, a deleted mission also stays until the server has run on thirty days more (see `DaysDeleted`).
+    years, a deleted mission also stays until the server has run on thirty days more (see `DaysSeen`), and so do sweeps
+    that are old by the clock.
     """
+    deleted, old = seen
     wait_s = FIRST_AFTER_S
     while True:
         await asyncio.sleep(wait_s)
         wait_s = EVERY_S
         now = datetime.now(UTC)
-        beside = (partial(_take_iq, iq, keep_days), *(partial(_take_gone, other) for other in others))
-        for chore in (partial(_bury, days), pack_paths, *beside, partial(_take_sweeps, keep_days)):
+        beside = (partial(_take_gone, other) for other in (iq, *others))
+        rule = () if keep_days is None else (_take_iq, _take_sweeps)
+        thinning = (partial(chore, keep_days or 0.0, old, iq) for chore in rule)
+        for chore in (partial(_bury, deleted), pack_paths, *beside, *thinning):
             try:
                 await chore(engine, now)
             except Exception:
                 log.exception("old raw sweeps, paths or missions could not be taken; tried again later")
 
 
-async def _bury(days: DaysDeleted, engine: AsyncEngine, now: datetime) -> None:
+async def _bury(days: DaysSeen, engine: AsyncEngine, now: datetime) -> None:
     async with engine.connect() as connection:
         query = select(missions.c.mission_id).where(missions.c.deleted_at_us.is_not(None))
         deleted = list(await connection.scalars(query))
@@ -231,15 +252,26 @@ async def _bury(days: DaysDeleted, engine: AsyncEngine, now: datetime) -> None:
         log.info("%d missions deleted more than %g days ago are gone", buried, DELETED_DAYS)
 
 
-async def _take_iq(iq: IqFolder, keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:
-    await thin_iq(engine, iq, keep_days, now)
-
-
 async def _take_gone(beside: Beside, engine: AsyncEngine, _now: datetime) -> None:
     await forget_gone(engine, beside)
 
 
-async def _take_sweeps(keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:
-    taken = Thinned(0, 0, 0) if keep_days is None else await thin(engine, keep_days, now)
+async def _due(keep_days: float, days: DaysSeen, iq: IqFolder, engine: AsyncEngine, now: datetime) -> list[str]:
+    """Missions with raw sweeps or IQ that have been older than the rule for long enough."""
+    kept = await asyncio.to_thread(iq.missions)
+    of_sweeps = select(sweeps.c.mission_id).where(sweeps.c.mission_id == missions.c.mission_id).exists()
+    query = select(missions.c.mission_id).where(_old(keep_days, now), of_sweeps | missions.c.mission_id.in_(kept))
+    async with engine.connect() as connection:
+        old = list(await connection.scalars(query))
+    counted = await asyncio.to_thread(days.count, old, now.date())
+    return [name for name in old if counted[name] >= min(keep_days, SEEN_OLD_DAYS)]
+
+
+async def _take_iq(keep_days: float, days: DaysSeen, iq: IqFolder, engine: AsyncEngine, now: datetime) -> None:
+    await thin_iq(engine, iq, keep_days, now, await _due(keep_days, days, iq, engine, now))
+
+
+async def _take_sweeps(keep_days: float, days: DaysSeen, iq: IqFolder, engine: AsyncEngine, now: datetime) -> None:
+    taken = await thin(engine, keep_days, now, await _due(keep_days, days, iq, engine, now))
     if taken.sweeps:
         log.info("took %d raw sweeps older than %g days (%d bytes)", taken.sweeps, keep_days, taken.size_bytes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import Literal
 
 from backend.reasons import Reason
@@ -45,9 +46,32 @@ class StockHealth(Model):
     full: bool
 
 
+class RefusedSender(Model):
+    """A sender of datagrams that were refused. name: what the last one calls itself, None when it was no bearing.
+    reason: of the last."""
+
+    address: str
+    name: str | None
+    refused: int
+    reason: Reason
+    at_utc: datetime
+
+
+class BearingsUdpHealth(Model):
+    """Bearings by UDP since the server's start. senders: of what was refused, the newest first; not all that there ever
+    were."""
+
+    host: str
+    port: int
+    taken: int
+    refused: int
+    senders: list[RefusedSender]
+
+
 class Health(Model):
     """ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
-    system does not say. keep_sweeps_days: of missions that are over; None for ever."""
+    system does not say. keep_sweeps_days: of missions that are over; None for ever. bearings_udp: None when no port is
+    open."""
 
     state: Literal["ok", "degraded"]
     version: str
@@ -58,5 +82,6 @@ class Health(Model):
     disk_free_bytes: int | None
     keep_sweeps_days: float | None
     stocks: list[StockHealth]
+    bearings_udp: BearingsUdpHealth | None
     simulated: bool
     time_factor: float

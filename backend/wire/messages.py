@@ -130,7 +130,8 @@ class CraftStatusMessage(Model):
 
 class StatusMessage(Model):
     """Once a second, and when an order goes on: the mission in the air, None when none is, every craft there is, and
-    the server's own health."""
+    the server's own health. database: "unstored" while the mission's facts can be stored nowhere: they are kept in
+    memory, and are shown once they are stored."""
 
     type: Literal["status"] = "status"
     at_utc: datetime
@@ -138,7 +139,7 @@ class StatusMessage(Model):
     phase: MissionPhase | None
     crafts: list[CraftStatusMessage]
     viewers: int
-    database: Literal["ok", "slow", "lost"]
+    database: Literal["ok", "slow", "lost", "unstored"]
 
 
 LiveMessage = Annotated[

@@ -10,7 +10,15 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from backend.bearing_feed import BURST, LARGEST_BYTES, BearingFeed, DatagramRefused, open_feed, read_datagram
+from backend.bearing_feed import (
+    BURST,
+    LARGEST_BYTES,
+    MOST_REFUSED,
+    BearingFeed,
+    DatagramRefused,
+    open_feed,
+    read_datagram,
+)
 from backend.reasons.refusals import MissionOver
 from backend.search.errors import MissionConflict
 from backend.search.reported import ReportedBearing
@@ -64,6 +72,7 @@ def test_a_datagram_of_horus_programs_is_a_bearing() -> None:
         (datagram(sigma=0), "sigma"),
         (datagram(source={"a": 1}), "source is no text"),
         (datagram(emitter_id=7), "emitter_id is no text"),
+        (datagram(emitter_id="a\n2026 ERROR fire"), "emitter_id is no emitter's id"),
         (datagram(raw_doa="x" * LARGEST_BYTES), "bytes"),
     ],
 )
@@ -145,6 +154,24 @@ async def test_a_flood_of_one_sender_leaves_room_for_others(caplog: pytest.LogCa
     search.clock_s = 60.0
     feed.datagram_received(b"x", ("192.0.2.66", 1))
     assert f"{feed.refused - 2} more were refused" in caplog.records[-1].message
+
+
+async def test_health_tells_what_was_refused_of_whom_and_keeps_little_of_many() -> None:
+    search = Search(over=True)
+    feed = search.feed()
+    async with open_feed(feed, "127.0.0.1", 0) as address:
+        for number in range(500):
+            feed.datagram_received(b"noise", (f"10.0.{number // 250}.{number % 250}", 1))
+        feed.datagram_received(b"noise", ("192.0.2.1", 1))
+        feed.datagram_received(datagram(source="yagi-1"), ("192.0.2.1", 1))
+        await until(lambda: feed.refused == 502)
+        told = feed.health()
+    assert (told.host, told.port, told.taken, told.refused) == (*address, 0, 502)
+    assert len(told.senders) == MOST_REFUSED
+    newest = told.senders[0]
+    assert (newest.address, newest.name, newest.refused) == ("192.0.2.1", "yagi-1", 2)
+    assert (newest.reason, newest.at_utc.timestamp()) == (MissionOver(), NOW_S)
+    assert [one.name for one in told.senders[1:]] == [None] * (MOST_REFUSED - 1)
 
 
 async def test_a_search_that_has_ended_refuses_and_the_feed_goes_on() -> None:

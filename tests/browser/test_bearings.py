@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
+import socket
 import time
+from pathlib import Path
 from uuid import uuid4
 
 import httpx
 import pytest
+from conftest import serving
 from playwright.sync_api import Page, Position, expect
 from screen import AIM_MAP, OpenScreen
 from served import Server
@@ -103,3 +107,25 @@ def test_a_search_without_a_craft_is_advised_until_it_is_localized(server: Serve
         assert httpx.post(address, json=report, timeout=20).status_code == 201
         expect(page.get_by_test_id("advice-said")).to_have_attribute("data-state", "outrun")
     expect(page.get_by_test_id("advice-done")).to_be_visible()
+
+
+def test_health_says_what_was_refused_of_what_came_by_udp(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, open_screen: OpenScreen
+) -> None:
+    monkeypatch.setenv("CROSSFIX_BEARINGS_UDP_PORT", "0")
+    with serving(tmp_path) as server:
+        said = server.get("/api/health")["bearings_udp"]
+        screen = open_screen(server, "#/health")
+        german = open_screen(server, "#/health", {"language": "de"})
+        expect(screen.part("udp-counts")).to_contain_text(f"port {said['port']}. Taken since the start: 0; refused: 0.")
+        expect(screen.part("udp-refused")).to_have_count(0)
+        bearing = {"latitude": 50.6, "longitude": 7.2, "bearing": 90, "source": "yagi-1"}
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            for data in (b"noise", json.dumps({"type": "BEARING", "bearing_type": "absolute", **bearing}).encode()):
+                sender.sendto(data, (said["host"], said["port"]))
+        refused = screen.part("udp-refused")
+        expect(refused).to_contain_text("yagi-1 (127.0.0.1): 2 refused, the last at")
+        expect(refused).to_contain_text("No search flies.")
+        expect(screen.part("udp-counts")).to_contain_text("refused: 2.")
+        expect(german.part("udp-refused")).to_contain_text("2 abgelehnt")
+        expect(german.part("udp-refused")).to_contain_text("Keine Suche fliegt.")

@@ -2,15 +2,34 @@
 
 from __future__ import annotations
 
+import httpx
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 from screen import OpenScreen
 from served import Server
 
 from backend.events import Recorded
+from tests.browser.stock import stored
 from tests.browser.test_after_flight import bring_in, checked
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
+
+
+def test_it_says_that_it_loads_and_then_that_there_is_nothing(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, "#/health")
+    held: list[Route] = []
+    screen.page.route("**/api/calibration*", lambda route: held.append(route), times=1)
+    screen.go("#/calibration")
+    expect(screen.part("calibration-loading")).to_be_visible()
+    expect(screen.part("calibration-nothing")).to_have_count(0)
+    held[0].continue_()
+    expect(screen.part("calibration-nothing")).to_contain_text("Nothing is checked yet.")
+    expect(screen.part("calibration-loading")).to_have_count(0)
+    flown = stored(server, "aborted")
+    lost = {"emitter_id": "emitter-1", "place": None, "accuracy_m": None, "how": "typed"}
+    httpx.put(f"{server.url.rstrip('/')}/api/missions/{flown}/truth", json=lost, timeout=60).raise_for_status()
+    screen.page.reload()
+    expect(screen.part("calibration-nothing")).to_contain_text("Missions checked: 1; not found: 1.")
 
 
 def test_a_season_is_told_by_vehicle_and_by_antenna(server: Server, open_screen: OpenScreen) -> None:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import gzip
 import sqlite3
+import subprocess
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import httpx
 import pytest
+from conftest import serving
 from legible import serious
 from playwright.sync_api import Browser, Response, Route, expect
 from screen import AUTOMATIC, OpenScreen, Screen
@@ -238,6 +241,37 @@ def test_a_database_that_waits_for_another_writer_is_not_said_to_be_away(
     expect(database).to_contain_text("SQLite answers.")
     expect(database).not_to_contain_text("wait on the disk")
     assert server.get(f"/api/missions/{mission}")["name"] == "written meanwhile"
+
+
+def forbid_writing(folder: Path, sign: str) -> None:
+    """As a disk that became read-only does, and allows it again; see tests/backend/store/test_outage.py."""
+    held = [str(path) for path in folder.iterdir() if not path.name.endswith("-shm")]
+    done = subprocess.run(["chattr", sign, *held, str(folder)], capture_output=True)
+    if done.returncode and sign == "+i":
+        forbid_writing(folder, "-i")
+        pytest.skip("files cannot be made immutable here: " + done.stderr.decode().strip())
+
+
+def test_a_flight_whose_facts_cannot_be_stored_says_so_and_is_held_all_the_same(
+    tmp_path: Path, open_screen: OpenScreen
+) -> None:
+    with serving(tmp_path) as server:
+        screen = open_screen(server)
+        screen.fly(server.draft())
+        screen.expect_phase("flying", "measuring")
+        expect(screen.part("unstored")).to_have_count(0)
+        forbid_writing(tmp_path, "+i")
+        try:
+            expect(screen.part("unstored")).to_contain_text("Nothing can be stored.")
+            expect(screen.part("unstored")).to_be_in_viewport(ratio=1)
+            screen.page.keyboard.press("Alt+Shift+H")
+            expect(screen.part("indicators")).to_contain_text("HOLD")
+        finally:
+            forbid_writing(tmp_path, "-i")
+        screen.expect_phase("hold")
+        expect(screen.part("unstored")).to_have_count(0)
+        held = [event for event in server.events(screen.mission_id) if event["kind"] == "hold_ordered"]
+        assert len(held) == 1, "it waited in memory, and is stored once"
 
 
 def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen: OpenScreen) -> None:

@@ -70,6 +70,13 @@ def control(screen: Screen, kind: str) -> None:
     screen.part(kind).click()
 
 
+def middle(screen: Screen, name: str) -> float:
+    """Of a part, px from the left edge."""
+    box = screen.part(name).bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2
+
+
 @pytest.mark.browser
 def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: OpenScreen) -> None:
     """One story: its steps need one another."""
@@ -95,6 +102,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
 
     late = opened(open_screen, shared)
     expect(late.part("entry-code")).to_have_count(0)
+    assert [middle(late, part) for part in ("entry-name", "entry-lost")] == pytest.approx([640, 640], abs=1)
     enter(late, "Eve")
     expect(late.page.get_by_role("alert")).to_contain_text("Name or password is wrong")
 

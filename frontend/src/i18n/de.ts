@@ -599,6 +599,10 @@ export const de: Record<MessageKey, string> = {
   "alerts.muted": "stumm",
 
   "menu.health": "Zustand des Servers",
+  "fly.unstored": "Nichts kann gespeichert werden.",
+  "fly.unstoredMeanwhile":
+    "Der Flug geht weiter und bleibt im Arbeitsspeicher. Peilungen, Schätzung und Ereignisse hier sind die von vorher; Ort, Akku und Befehle sind aktuell.",
+  "instruments.database.unstored": "nichts kann gespeichert werden",
   "health.title": "Zustand des Servers",
   "health.ok": "Alles antwortet.",
   "health.degraded": "Der Server arbeitet; etwas, das er braucht, nicht.",
@@ -620,6 +624,9 @@ export const de: Record<MessageKey, string> = {
   "health.stockFull": "Mehr davon wird nicht angenommen: Nicht Gebrauchtes löschen oder die Grenze erhöhen lassen.",
   "health.vehicle": "Fluggerät {craft}",
   "health.vehicleOk": "Sein Autopilot ({autopilot}) ist zu hören.",
+  "health.udp": "Peilungen über UDP",
+  "health.udpCounts": "Empfang auf {host}, Port {port}. Seit dem Start angenommen: {taken}; abgelehnt: {refused}.",
+  "health.udpRefused": "{sender}: {count} abgelehnt, zuletzt um {time}.",
   "health.unknown": "Der Server antwortet nicht; von nichts hier ist bekannt, dass es jetzt so ist.",
   "missions.title": "Missionen",
   "missions.new": "Neue Mission",
@@ -1102,6 +1109,10 @@ export const de: Record<MessageKey, string> = {
   "calibration.craft": "Fluggerät",
   "calibration.antenna": "Antenne",
   "calibration.any": "alle",
+  "calibration.loading": "Liest die geprüften Missionen …",
+  "calibration.noneOfThese": "Keine geprüfte Mission hat dieses Fluggerät und diese Antenne.",
+  "calibration.nothingTold":
+    "Geprüfte Missionen: {missions}; nicht gefunden: {lost}. Keine hat eine Peilung zu einem Sender, dessen Ort bekannt ist; zu vergleichen ist nichts.",
   "calibration.empty": "Noch ist nichts geprüft. Öffnen Sie eine Mission, und sagen Sie unter „Gefunden?“, wo der Sender war.",
   "calibration.of": "Geprüfte Missionen: {missions}, mit {bearings} Peilungen; nicht gefunden: {lost}.",
   "calibration.held": "Traf zu",

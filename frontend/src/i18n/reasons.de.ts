@@ -1,5 +1,6 @@
 // German for every reason, by room; a missing one does not compile.
 import { access } from "./german/access";
+import { datagrams } from "./german/datagrams";
 import { flight } from "./german/flight";
 import { maps } from "./german/maps";
 import { payload } from "./german/payload";
@@ -25,6 +26,7 @@ export const reasonsDe: ReasonTable = {
   ...recording,
   ...vehicle,
   ...preflight,
+  ...datagrams,
   ...flight,
   ...safety,
   ...maps,

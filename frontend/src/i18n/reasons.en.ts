@@ -1078,6 +1078,42 @@ export const reasonsEn: ReasonTable = {
     text: "Connecting to {address} failed inside Crossfix and is tried again.",
     remedy: "",
   },
+  datagram_too_long: {
+    text: "It has {size} bytes; {most} are the most.",
+    remedy: "Leave the raw directions out.",
+  },
+  datagram_no_bearing: {
+    text: 'It is {what?json=not JSON|bearing=no object of type "BEARING"}.',
+    remedy: "Send one bearing in each datagram, and nothing else to this port.",
+  },
+  datagram_not_absolute: {
+    text: 'Its bearing_type is not "absolute".',
+    remedy: "Send the bearing from true north, and the place.",
+  },
+  datagram_value_unreadable: {
+    text: "Its {name} is no {wanted?number=number|text=text|emitter=emitter's id}.",
+    remedy: "Mend what the sender writes.",
+  },
+  datagram_value_impossible: {
+    text: "Its {name} is {value}; it must be between {least} and {most}.",
+    remedy: "Mend what the sender writes.",
+  },
+  sender_too_busy: {
+    text: "Its sender sends too many.",
+    remedy: "Let it send at most five a second.",
+  },
+  too_many_wait: {
+    text: "Too many wait to be taken.",
+    remedy: "Let the stations send less often.",
+  },
+  same_errors_again: {
+    text: "One of {station} from the same place was taken less than {within_s} ago; it has the same errors.",
+    remedy: "",
+  },
+  no_search_flies: {
+    text: "No search flies.",
+    remedy: "Start one; bearings for a draft are sent by HTTP.",
+  },
   ordered: {
     text: "{order?start=Started|resume=Resumed|hold=Held|return=Return ordered|land=Landing ordered|abort=Aborted|override=Place chosen|accept=Place accepted|veto=Place refused|automatic=Automatic acceptance armed|exclude=Bearing excluded} by {by}.",
     remedy: "",

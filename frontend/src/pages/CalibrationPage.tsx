@@ -182,21 +182,46 @@ function Found({ found }: { found: Calibration }) {
   );
 }
 
+const told = ({ bearings, fixes, forecast_90 }: Calibration) => bearings.length + fixes.length + forecast_90.of > 0;
+
+/** Why there are no figures. chosen: they are asked of one vehicle or antenna. */
+function Nothing({ found, chosen }: { found: Calibration; chosen: boolean }) {
+  const { missions, not_found: lost } = found;
+  const none = t(chosen ? "calibration.noneOfThese" : "calibration.empty");
+  return (
+    <p class="card" data-testid="calibration-nothing">
+      {missions > 0 ? t("calibration.nothingTold", { missions, lost }) : none}
+    </p>
+  );
+}
+
 export function CalibrationPage() {
   const [craft, setCraft] = useState("");
   const [antenna, setAntenna] = useState("");
   const [found, setFound] = useState<Calibration | null>(null);
+  const [loading, setLoading] = useState(true);
   const [problem, setProblem] = useState<Problem | null>(null);
   useEffect(() => {
     let current = true;
+    setLoading(true);
+    setProblem(null);
     calibration(craft, antenna).then(
-      (answer) => current && setFound(answer),
-      (error: unknown) => current && setProblem(asProblem(error)),
+      (answer) => {
+        if (!current) return;
+        setFound(answer);
+        setLoading(false);
+      },
+      (error: unknown) => {
+        if (!current) return;
+        setProblem(asProblem(error));
+        setLoading(false);
+      },
     );
     return () => {
       current = false;
     };
   }, [craft, antenna]);
+  const chosen = craft !== "" || antenna !== "";
   return (
     <div class="page" data-testid="calibration">
       <div class="page-head">
@@ -205,8 +230,12 @@ export function CalibrationPage() {
         <Choose label="calibration.antenna" value={antenna} all={found?.antennas ?? []} onChoose={setAntenna} />
       </div>
       {problem && <ProblemBox problem={problem} />}
-      {found && found.missions + found.not_found === 0 && <p class="card">{t("calibration.empty")}</p>}
-      {found && found.missions > 0 && <Found found={found} />}
+      {loading && (
+        <p class="muted" role="status" data-testid="calibration-loading">
+          {t("calibration.loading")}
+        </p>
+      )}
+      {found && !loading && !problem && (told(found) ? <Found found={found} /> : <Nothing found={found} chosen={chosen} />)}
     </div>
   );
 }

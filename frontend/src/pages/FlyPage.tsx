@@ -16,7 +16,7 @@ import { Timeline } from "../panels/Timeline";
 import { TruthCard } from "../panels/TruthCard";
 import { WaysCard } from "../panels/WaysCard";
 import { type Card, chosenCard } from "../state/card";
-import { source } from "../state/connection";
+import { live, source } from "../state/connection";
 import { mission } from "../state/shown";
 import "../style/review.css";
 import "../style/sweep.css";
@@ -26,6 +26,22 @@ const GAP_PX = 8;
 
 /** The 3D scene instead of the map. */
 const scene = signal(false);
+
+/** While the flight's facts can be stored nowhere they are not shown either: what the page says stands still. */
+function NotStored() {
+  const status = live.value.status?.value;
+  if (status?.database !== "unstored" || status.mission_id !== mission.value.missionId) return null;
+  return (
+    <div class="banner caution unstored" role="alert" data-testid="unstored">
+      <span>
+        <strong>{t("fly.unstored")}</strong> {t("fly.unstoredMeanwhile")}
+      </span>
+      <a class="button" href="#/health">
+        {t("health.title")}
+      </a>
+    </div>
+  );
+}
 
 function MapArea() {
   const [state, setState] = useState<"loading" | "none" | { Map: ComponentType }>("loading");
@@ -58,6 +74,7 @@ function MapArea() {
         </button>
       )}
       <AlertBanner />
+      <NotStored />
     </div>
   );
 }

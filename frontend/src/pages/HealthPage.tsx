@@ -6,7 +6,7 @@ import { reasonRemedy, reasonText, t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { autopilotWords } from "../state/words";
-import { formatDuration, formatNumber } from "../units/quantities";
+import { formatClock, formatDuration, formatNumber } from "../units/quantities";
 import type { Health, Problem, Reason } from "../wire";
 
 const REFRESH_MS = 3000;
@@ -37,6 +37,27 @@ function StockLine({ stock }: { stock: Health["stocks"][number] }) {
       <p data-testid={`stock-${stock.what}`}>{t(`health.stock.${stock.what}`, { number, ...room })}</p>
       {stock.full && <p class="refused">{t("health.stockFull")}</p>}
     </>
+  );
+}
+
+function ByUdp({ told }: { told: NonNullable<Health["bearings_udp"]> }) {
+  const { host, port, taken, refused, senders } = told;
+  return (
+    <Part name={t("health.udp")} good>
+      <p data-testid="udp-counts">
+        {t("health.udpCounts", { host, port: String(port), taken: formatNumber(taken), refused: formatNumber(refused) })}
+      </p>
+      {senders.map((one) => (
+        <p data-testid="udp-refused" key={one.address}>
+          {t("health.udpRefused", {
+            sender: one.name === null ? one.address : `${one.name} (${one.address})`,
+            count: formatNumber(one.refused),
+            time: `${formatClock(one.at_utc)} UTC`,
+          })}{" "}
+          {reasonText(one.reason)} {reasonRemedy(one.reason)}
+        </p>
+      ))}
+    </Part>
   );
 }
 
@@ -81,6 +102,7 @@ function Parts({ health }: { health: Health }) {
           )}
         </Part>
       ))}
+      {health.bearings_udp && <ByUdp told={health.bearings_udp} />}
     </>
   );
 }

@@ -99,7 +99,7 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
       {bearings.length > 0 && (
         <>
           <h3>{t("report.bearings")}</h3>
-          <table>
+          <table class="stacked" data-testid="report-bearings">
             <thead>
               <tr>
                 <th scope="col">{t("plan.place")}</th>
@@ -112,14 +112,14 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
             <tbody>
               {bearings.map(({ fact: b, at, excluded }) => (
                 <tr key={b.bearing_id}>
-                  <td>{b.source.kind === "person" ? b.source.name : b.place_number}</td>
+                  {b.source.kind === "person" ? <td>{b.source.name}</td> : <td data-label={t("plan.place")}>{b.place_number}</td>}
                   <td>{formatClock(at)}</td>
-                  <td>{formatPlace(b.place, coordinates)}</td>
+                  <td class="below">{formatPlace(b.place, coordinates)}</td>
                   <td>
                     {t("sweep.bearing", { bearing: formatBearing(b.bearing_deg), sigma: formatNumber(b.sigma_deg, 1) })}
                     {excluded && ` (${t("sweep.excluded")})`}
                   </td>
-                  <td>{formatNumber(b.quality, 2)}</td>
+                  <td data-label={t("report.quality")}>{formatNumber(b.quality, 2)}</td>
                 </tr>
               ))}
             </tbody>
@@ -172,7 +172,7 @@ function Overview({ all }: { all: readonly Told[] }) {
   return (
     <section data-testid="report-overview">
       <h1>{t("report.overview", { count: lines.length })}</h1>
-      <table>
+      <table class="stacked">
         <thead>
           <tr>
             <th scope="col">{t("missions.name")}</th>
@@ -189,12 +189,14 @@ function Overview({ all }: { all: readonly Told[] }) {
               <tr key={`${told.id} ${id}`}>
                 <td>{spec?.name}</td>
                 <td>{emitterName(spec?.emitters ?? [], id)}</td>
-                <td>{estimate ? formatPlace(estimate, coordinates) : t("report.notKnown")}</td>
-                <td>
+                <td class="below">{estimate ? formatPlace(estimate, coordinates) : t("report.notKnown")}</td>
+                <td class={estimate ? "below" : "none"} data-label={t("report.giveOrTake")}>
                   {estimate ? formatLength(estimate.expected_rmse_m, units) : "–"}
                   {estimate && !belief?.fact.localized && ` (${t("report.notCertain")})`}
                 </td>
-                <td>{truth ? (truth.fact.place ? formatPlace(truth.fact.place, coordinates) : t("truth.notFound")) : "–"}</td>
+                <td class={truth ? "below" : "none"} data-label={t("truth.title")}>
+                  {truth ? (truth.fact.place ? formatPlace(truth.fact.place, coordinates) : t("truth.notFound")) : "–"}
+                </td>
               </tr>
             );
           })}

@@ -106,7 +106,7 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
                 </button>
               </td>
               <td>{formatDuration(candidate.value_s)}</td>
-              <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, 1)}</td>
+              <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, candidate.std_error_s < 100 ? 1 : 0)}</td>
               <td>{candidate.rollouts}</td>
               <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
             </tr>

@@ -59,10 +59,11 @@ export function ReportMap({ view }: { view: MissionView }) {
         ))}
       {bearings.map(({ fact }) => {
         const [x, y] = at(lonLat(fact.place));
+        const below = y < 2 * MARGIN; // there is no room above it for the large letters of a phone
         return (
           <g key={fact.bearing_id}>
             <circle class="mini-place" cx={x} cy={y} r="4" />
-            <text x={x + 7} y={y - 7} font-size="13">
+            <text x={x + 7} y={below ? y + 7 : y - 7} font-size="13" dominant-baseline={below ? "hanging" : "auto"}>
               {fact.source.kind === "person" ? fact.source.name : fact.place_number}
             </text>
           </g>
@@ -74,7 +75,7 @@ export function ReportMap({ view }: { view: MissionView }) {
       <text x={MARGIN} y={HEIGHT - 20} font-size="12">
         {formatLength(step, settings.value.units)}
       </text>
-      <text x={WIDTH - MARGIN} y={22} font-size="13" text-anchor="end">
+      <text x={WIDTH - MARGIN} y={14} font-size="13" text-anchor="end" dominant-baseline="hanging">
         {t("report.north")}
       </text>
     </svg>

@@ -27,6 +27,10 @@ async def test_the_disk_and_the_rule_of_retention_are_told(client):
     assert health["keep_sweeps_days"] is None
 
 
+async def test_without_a_port_for_bearings_nothing_is_told_of_them(client):
+    assert (await client.get("/api/health")).json()["bearings_udp"] is None
+
+
 async def test_a_probe_gets_200_as_long_as_the_server_answers(client, vehicle):
     assert (await client.get("/health")).json() == {"state": "ok"}
     vehicle.heard_last = GONE

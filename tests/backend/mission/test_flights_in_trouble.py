@@ -232,7 +232,7 @@ async def test_a_resume_on_the_ground_is_refused_until_the_battery_was_changed(s
 async def test_facts_wait_for_a_database_that_is_away_and_nothing_is_lost_or_doubled(stage: Stage) -> None:
     mission_id = await flying(stage)
     stage.journal.away = True
-    await stage.until_true(lambda: stage.room.display.status().database == "lost")
+    await stage.until_true(lambda: stage.room.display.status().database == "unstored")
     stage.journal.away = False
     await stage.until_phase(mission_id, "landing")
     recorded = stage.journal.stored[mission_id]

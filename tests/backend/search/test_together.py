@@ -186,7 +186,8 @@ def test_bearings_from_a_file_are_believed_with_what_the_other_emitters_tell() -
     state, _ = flown(SPEC, 2)
     read = RecordedBearing(line=1, place=FRAME.to_geo(140.0, 190.0), bearing_deg=240.0, sigma_deg=5.0)
     given = Upload("r", "station.csv", Recording((), (), (read,)), emitter_id="a")
-    *facts, belief = bearing_facts("m", state, given, "anna").facts
+    *facts, belief = bearing_facts("m", state, given, "anna", believed=True).facts
+    assert bearing_facts("m", state, given, "anna", believed=False).facts == tuple(facts)
     for fact in facts:
         state = evolve(state, fact, 0.0)
     counted = state.emitters["a"].bearings

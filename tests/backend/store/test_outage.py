@@ -19,7 +19,7 @@ from sqlalchemy import make_url
 
 from backend.events import HoldOrdered, MissionDrafted, MissionStarted
 from backend.ports import TrackPoint
-from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskLow
+from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskLow, NothingStores
 from backend.settings import Settings
 from backend.spec import MissionSpec, Polygon
 from backend.store import delivery
@@ -332,6 +332,43 @@ async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
         assert [record.seq for record in read] == list(range(1, len(read) + 1))
         assert filled <= len(read) - 2 <= filled + 1
     assert sqlite3.connect(small_disk / "crossfix.sqlite").execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+
+
+@pytest.fixture
+def forbidden(tmp_path: Path):
+    """Forbids, or allows again, writing to what lies in a folder, as a disk that became read-only does. What SQLite has
+    mapped into memory stays out: a process that writes there to a file that was forbidden is killed."""
+
+    def forbid(sign: str) -> None:
+        held = [path for path in tmp_path.iterdir() if not path.name.endswith("-shm")]
+        done = subprocess.run(["chattr", sign, *map(str, held), str(tmp_path)], capture_output=True)
+        if done.returncode:
+            pytest.skip("files cannot be made immutable here: " + done.stderr.decode().strip())
+
+    yield forbid
+    forbid("-i")
+
+
+async def test_files_that_cannot_be_written_any_more_are_said_and_stop_nothing(forbidden, tmp_path, caplog):
+    async with open_journal(Settings(data_dir=tmp_path), lambda: 1.7e9) as journal:
+        flight = Flight(journal)
+        await flight.begin()
+        await flight.go_on(2)
+        forbidden("+i")
+        for _ in range(3):
+            with pytest.raises(JournalUnavailable, match="the spool cannot be written"):
+                await flight.go_on(1)
+            await asyncio.sleep(delivery.RETRY_FIRST_S)
+            report = journal.report()
+            assert (report.state, report.spooled) == ("lost", 0)
+            assert isinstance(report.reason, NothingStores)
+        assert len(await journal.read("m")) == 4, "what was stored is read"
+        forbidden("-i")
+        await until(journal, "ok")
+        await flight.go_on(2)
+    assert "did not foresee" not in caplog.text
+    async with open_journal(Settings(data_dir=tmp_path), lambda: 1.7e9) as journal:
+        await flight.check(journal)
 
 
 async def test_a_disk_that_fills_up_is_told_before_it_is_full(tmp_path):

@@ -16,7 +16,7 @@ from backend.events import MissionDeleted, MissionDrafted, MissionEnded, Mission
 from backend.reasons.flight import Ordered
 from backend.reasons.search import Localized
 from backend.store import retention
-from backend.store.days_deleted import DaysDeleted
+from backend.store.days_seen import DaysSeen
 from backend.store.engine import engine_for_once
 from backend.store.iq_folder import IqFolder
 from backend.store.retention import old_sweeps, thin
@@ -87,9 +87,11 @@ async def test_a_chore_that_fails_keeps_none_of_the_others_from_its_turn(bench, 
         monkeypatch.setattr(retention, name, failing)
     monkeypatch.setattr(retention, "FIRST_AFTER_S", 0.0)
     engine = engine_for_once(bench.url, 60.0)
-    others = ToldFolder(tmp_path / "told"), WaysFiles(tmp_path)
-    days = DaysDeleted(tmp_path / "deleted.json")
-    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, days, IqFolder(tmp_path / "iq"), *others))
+    others = ToldFolder(tmp_path / "told"), WaysFiles(tmp_path / "ways")
+    old = DaysSeen(tmp_path / "old.json")
+    old.file.write_text(f'{{"over": [30, "{datetime.now(UTC).date()}"]}}')
+    seen = DaysSeen(tmp_path / "deleted.json"), old
+    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, seen, IqFolder(tmp_path / "iq"), *others))
     async with asyncio.timeout(60):
         while (await old_sweeps(engine, 30.0, datetime.now(UTC))).sweeps:  # noqa: ASYNC110 (it says nothing)
             await asyncio.sleep(0.05)
@@ -104,7 +106,7 @@ async def test_a_clock_that_was_set_ahead_buries_nothing(bench, tmp_path):
     journal = await bench.open()
     bench.now_s = NOW.timestamp()
     await journal.append("deleted", [DRAFT, MissionDeleted(by="operator")])
-    days = DaysDeleted(tmp_path / "deleted.json")
+    days = DaysSeen(tmp_path / "deleted.json")
     engine = engine_for_once(bench.url, 5.0)
 
     async def runs_on(*when: datetime) -> bool:
@@ -125,8 +127,45 @@ async def test_a_clock_that_was_set_ahead_buries_nothing(bench, tmp_path):
         await engine.dispose()
 
 
+async def test_a_clock_that_was_set_ahead_takes_no_raw_sweeps(bench, tmp_path):
+    """Over since yesterday; then the clock says 2036, the server runs on, and the clock is put right again."""
+    await fill(bench, 1.0)
+    days, iq = DaysSeen(tmp_path / "old.json"), IqFolder(tmp_path / "iq")
+    engine = engine_for_once(bench.url, 5.0)
+
+    async def runs_on(*when: datetime) -> int:
+        """Sweeps of the mission that is over, after these days."""
+        for now in when:
+            await retention._take_sweeps(365.0, days, iq, engine, now)
+            await retention._take_sweeps(365.0, days, iq, engine, now + timedelta(hours=1))
+        return (await old_sweeps(engine, 0.0, NOW)).sweeps
+
+    try:
+        ahead = datetime(2036, 6, 1, tzinfo=UTC)
+        assert await runs_on(*(ahead + timedelta(days=day) for day in range(29))) == 60
+        assert await runs_on(*(NOW + timedelta(days=day) for day in range(2, 364))) == 60
+        later = [NOW + timedelta(days=365 + day) for day in range(31)]
+        assert await runs_on(*later[:-1]) == 60, "it was not old any more meanwhile: days begin anew"
+        assert await runs_on(later[-1]) == 0
+    finally:
+        await engine.dispose()
+
+
+async def test_a_rule_of_fewer_days_waits_for_no_more_than_these(bench, tmp_path):
+    await fill(bench, 400.0)
+    days, iq = DaysSeen(tmp_path / "old.json"), IqFolder(tmp_path / "iq")
+    engine = engine_for_once(bench.url, 5.0)
+    try:
+        for day, left_over in enumerate((60, 60, 0)):
+            await retention._take_sweeps(2.0, days, iq, engine, NOW + timedelta(days=day))
+            assert (await old_sweeps(engine, 2.0, NOW)).sweeps == left_over
+        await retention._take_sweeps(0.0, days, iq, engine, NOW)
+    finally:
+        await engine.dispose()
+
+
 def test_days_count_once_each_and_begin_anew_when_a_mission_was_restored(tmp_path, caplog):
-    days, first = DaysDeleted(tmp_path / "deleted.json"), date(2026, 6, 1)
+    days, first = DaysSeen(tmp_path / "deleted.json"), date(2026, 6, 1)
     assert [days.count(["a"], first) for _ in range(3)] == [{"a": 0}] * 3
     assert days.count(["a", "b"], first + timedelta(days=9)) == {"a": 1, "b": 0}
     assert days.count(["b"], first + timedelta(days=10)) == {"b": 1}

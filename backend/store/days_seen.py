@@ -1,5 +1,5 @@
-"""On how many days the server ran since it first saw a mission deleted: a clock that was set ahead by years buries
-nothing, since it adds one day.
+"""On how many days the server ran since it first saw a mission deleted, or its raw sweeps old: a clock that was set
+ahead by years takes nothing, since it adds one day.
 
 A server that runs at week-ends only keeps what was deleted longer than thirty days; too long is no loss. Blocking; use
 threads.
@@ -24,21 +24,26 @@ _COUNTED = TypeAdapter(dict[str, tuple[int, date]])
 
 
 @dataclass(frozen=True, slots=True)
-class DaysDeleted:
+class DaysSeen:
     """A file beside the database: by mission, the days after the first, and the last of them. One server writes it."""
 
     file: Path
 
     @classmethod
-    def of_settings(cls, settings: Settings) -> DaysDeleted:
-        """Where a server with these settings keeps it."""
+    def deleted(cls, settings: Settings) -> DaysSeen:
+        """Where a server with these settings counts for deleted missions."""
         return cls(settings.data_dir / "deleted.json")
 
-    def count(self, deleted: Collection[str], today: date) -> dict[str, int]:
-        """Days on which the server ran after the one on which it first saw each of them deleted; asked again on the
-        same day it counts once. What is not deleted any more is forgotten. Raises OSError."""
+    @classmethod
+    def old(cls, settings: Settings) -> DaysSeen:
+        """Where it counts for missions that are older than the rule for raw sweeps."""
+        return cls(settings.data_dir / "old_sweeps.json")
+
+    def count(self, seen: Collection[str], today: date) -> dict[str, int]:
+        """Days on which the server ran after the one on which it first saw each of them so; asked again on the same day
+        it counts once. What is not so any more is forgotten. Raises OSError."""
         before = self._read()
-        now = {name: _next(before.get(name), today) for name in deleted}
+        now = {name: _next(before.get(name), today) for name in seen}
         if now != before:
             part = self.file.with_suffix(".part")
             with part.open("wb") as stream:
@@ -55,7 +60,7 @@ class DaysDeleted:
         except FileNotFoundError:
             return {}
         except ValidationError:
-            log.warning("%s cannot be read: deleted missions are kept for thirty days from now", self.file)
+            log.warning("%s cannot be read: what it counted is kept for thirty days from now", self.file)
             return {}
 
 
