@@ -13,6 +13,7 @@ from planner.belief.joint import JointBelief
 from planner.belief.learning import flight_evidence, learned
 from planner.belief.source_errors import ErrorPrior
 from planner.study.errors import StudyError
+from planner.types import FloatArray
 
 FIRST_LESSON = 1_000_000
 """Seed of the first flight that is only learned from."""
@@ -24,7 +25,7 @@ def taught(study: FieldStudy, flights: int) -> FieldStudy:
     if flights and study.options.errors != "joint":
         raise StudyError("only flights whose errors are estimated with the place teach anything of them")
     unknown = unknown_errors(study.spec.sensor.outlier_probability)
-    found, now = [], study
+    found, now = list[FloatArray](), study
     for seed in range(FIRST_LESSON, FIRST_LESSON + flights):
         _, belief = now.flown(seed)
         assert isinstance(belief, JointBelief)
