@@ -59,6 +59,10 @@ def everybody(_person: str) -> bool:
     return True
 
 
+ANSWERED_S = 3.0
+"""For so long an answer waits for a disk on which nothing can be stored."""
+PARTING_S = 20.0
+"""And for so long a server that ends."""
 WHILE_ENDING = (commands.Hold, commands.Return, commands.Land, commands.Abort, commands.AcknowledgeAlert)
 
 
@@ -229,7 +233,7 @@ class Flights:
                 await runner.close()
             else:
                 self._fly(runner)
-                await runner.outbox.flushed()
+                await runner.outbox.flushed(ANSWERED_S)
             return _reply(request, asked, runner.outbox.last_seq)
 
     async def _keep_ground(self, task: SearchTask | None) -> tuple[GroundFact | None, tuple[Reason, ...]]:
@@ -354,7 +358,7 @@ class Flights:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         if self.active is not None:
-            await self.active.close()
+            await self.active.close(PARTING_S)
             self.active = None
 
 
@@ -367,12 +371,13 @@ def holder_gone(state: MissionState, operates: Operates) -> bool:
 async def _in_flight(
     runner: MissionRunner, request: CommandRequest, author: Author, operates: Operates
 ) -> CommandReply:
-    """At once: what moves or stops the vehicle is under way before the journal is waited for."""
+    """At once: what moves or stops the vehicle is under way before the journal is waited for, and is answered for
+    where nothing can be stored."""
     return await _answered(runner, request, runner.command(request, author, holder_gone(runner.state, operates)))
 
 
 async def _answered(runner: MissionRunner, request: CommandRequest, asked: tuple[Effect, ...]) -> CommandReply:
-    await runner.outbox.flushed()
+    await runner.outbox.flushed(ANSWERED_S)
     return _reply(request, asked, runner.outbox.last_seq)
 
 

@@ -84,23 +84,37 @@ class Outbox:
         if self._writer is None:
             self._writer = asyncio.create_task(self._write())
 
-    async def flushed(self) -> None:
-        """Returns when everything handed in so far is durable and shown, whatever is handed in meanwhile."""
+    async def flushed(self, patience_s: float | None = None) -> None:
+        """Returns when everything handed in so far is durable and shown, whatever is handed in meanwhile. Where nothing
+        can be stored, after patience_s; None: never."""
         reached = asyncio.Event()
 
         async def mark() -> None:
             reached.set()
 
         self.after(mark)
-        await reached.wait()
+        await self._done(reached.wait, patience_s)
 
-    async def close(self) -> None:
-        """Everything handed in is written first. What still comes afterwards is written too."""
-        await self._waiting.join()
+    async def close(self, patience_s: float | None = None) -> None:
+        """Everything handed in is written first; where nothing can be stored it is lost after patience_s. What still
+        comes afterwards is written too."""
+        if not await self._done(self._waiting.join, patience_s):
+            log.error("mission %s: what waited to be stored is lost, since nothing could be", self._mission_id)
+            self._waiting = asyncio.Queue()
         if self._writer is not None:
             writer, self._writer = self._writer, None
             writer.cancel()
             await asyncio.gather(writer, return_exceptions=True)
+
+    async def _done(self, waited_for: Callable[[], Awaitable[object]], patience_s: float | None) -> bool:
+        while True:
+            try:
+                async with asyncio.timeout(patience_s):
+                    await waited_for()
+                return True
+            except TimeoutError:
+                if self.failing:
+                    return False
 
     async def _write(self) -> None:
         while True:

@@ -95,12 +95,13 @@ class MissionRunner:
             with about(self.mission_id, craft_id, command=None):
                 craft.begin()
 
-    async def close(self) -> None:
-        """Stop everything of this mission; what is recorded reaches the journal first. Sends nothing."""
+    async def close(self, patience_s: float | None = None) -> None:
+        """Stop everything of this mission; what is recorded reaches the journal first, unless nothing can be stored for
+        patience_s. Sends nothing."""
         for craft in self.crafts.values():
             await craft.close()
         await self._beliefs.close()
-        await self.outbox.close()
+        await self.outbox.close(patience_s)
 
     def give(self, given: Input) -> tuple[Effect, ...]:
         """One input through the machine; its effects are under way when this returns."""

@@ -77,6 +77,35 @@ async def test_a_journal_that_fails_is_asked_again_and_the_order_is_kept() -> No
     await outbox.close()
 
 
+async def test_nobody_waits_for_ever_for_a_journal_that_stores_nothing() -> None:
+    outbox, journal, publisher = made()
+    journal.away = True
+    outbox.record([resumed("a")])
+    async with asyncio.timeout(60):
+        await outbox.flushed(0.01)
+        assert outbox.failing
+        await outbox.close(0.01)
+    assert publisher.shown == []
+    journal.away = False
+    outbox.record([resumed("b")])
+    await outbox.flushed()
+    assert journal.kinds("m") == ["resume_ordered"], "what was being written when it ended is lost"
+    await outbox.close()
+
+
+async def test_whoever_is_patient_gets_what_a_slow_journal_stores() -> None:
+    outbox, journal, _ = made()
+
+    async def slow() -> None:
+        await asyncio.sleep(0.1)
+
+    outbox.after(slow)
+    outbox.record([resumed("a")])
+    await outbox.flushed(0.001)
+    assert journal.kinds("m") == ["resume_ordered"]
+    await outbox.close()
+
+
 async def test_a_fact_that_is_refused_for_good_is_kept_aside_and_said_once_and_holds_nothing_up() -> None:
     said: list[str] = []
     journal = MemoryJournal(ScaledClock())
