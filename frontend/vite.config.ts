@@ -21,6 +21,13 @@ const builtFromSources = [
   { find: "@maplibre/mlt", replacement: here("src/map/maplibreTiles.ts") },
 ];
 
+/** What is loaded together, and pages that are seldom opened: files of a few kilobytes pack worse each by itself. */
+const together = [
+  { name: "reasons.de", test: /src\/i18n\/(de\.ts|german|reasons\.de)/, includeDependenciesRecursively: false },
+  { name: "reasons.en", test: /src\/i18n\/(pages|reasons)\.en/, includeDependenciesRecursively: false },
+  { name: "seldom", test: /src\/pages\/(Area|Calibration|Compare|Health|Join|Maps)Page/, includeDependenciesRecursively: false },
+];
+
 export default defineConfig(({ command }) => ({
   base: "./",
   plugins: [serviceWorker(here("public"))],
@@ -33,7 +40,7 @@ export default defineConfig(({ command }) => ({
     sourcemap: false,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
-    rolldownOptions: { output: { codeSplitting: { groups: [map, bar] } } },
+    rolldownOptions: { output: { codeSplitting: { groups: [map, bar, ...together] } } },
   },
   server: { host: "127.0.0.1", proxy: { "/api": { target: server, ws: true } } },
   test: { setupFiles: ["src/i18n/forTests.ts"], include: ["src/**/*.test.ts", "src/**/*.test.tsx"] },
