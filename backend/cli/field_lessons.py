@@ -20,8 +20,11 @@ FIRST_LESSON = 1_000_000
 
 
 def taught(study: FieldStudy, flights: int) -> FieldStudy:
-    """The row after so many flights of its craft, each with what was learned before it; where the emitters were, nobody
-    says. StudyError: its bearings are taken to be independent, and teach nothing."""
+    """The same row, flown after this many flights of its craft. Each flight starts with what those before it taught by
+    their bearings alone: nobody says where the emitters were.
+
+    Raises StudyError for a row whose bearings are taken to be independent, since those teach nothing.
+    """
     if flights and study.options.errors != "joint":
         raise StudyError("only flights whose errors are estimated with the place teach anything of them")
     unknown = unknown_errors(study.spec.sensor.outlier_probability)

@@ -29,8 +29,8 @@ log = logging.getLogger("crossfix.store")
 DELETED_DAYS = 30.0
 """For this many days a deleted mission can be restored."""
 SEEN_OLD_DAYS = 30.0
-"""On so many days, or on as many as the rule itself has, the server runs on before it takes raw sweeps that are old by
-its clock, which may be wrong."""
+"""The clock may be wrong, so raw sweeps that it calls old stay until the server has run on this many further days, or
+on as many as the rule has, if that is fewer."""
 AT_ONCE = 50
 """Sweeps in one transaction: a flight that writes meanwhile waits for no more than that."""
 PAUSE_S = 0.05

@@ -244,7 +244,7 @@ def test_a_database_that_waits_for_another_writer_is_not_said_to_be_away(
 
 
 def forbid_writing(folder: Path, sign: str) -> None:
-    """As a disk that became read-only does, and allows it again; see tests/backend/store/test_outage.py."""
+    """As a disk that became read-only does, and allows it again; see tests/backend/store/test_disk.py."""
     held = [str(path) for path in folder.iterdir() if not path.name.endswith("-shm")]
     done = subprocess.run(["chattr", sign, *held, str(folder)], capture_output=True)
     if done.returncode and sign == "+i":

@@ -8,81 +8,21 @@ import random
 import sqlite3
 import subprocess
 import sys
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
-from pathlib import Path
 
 import numpy as np
 import pytest
-from narrowing import a, known
+from narrowing import known
 from sqlalchemy import make_url
+from written_flight import DRAFT, STARTED, SWEEP, Flight, hold, until, watched
 
-from backend.events import HoldOrdered, MissionDrafted, MissionStarted
 from backend.ports import TrackPoint
-from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskLow, NothingStores
+from backend.reasons.storage import DatabaseSilent, DatabaseTaken
 from backend.settings import Settings
-from backend.spec import MissionSpec, Polygon
 from backend.store import delivery
 from backend.store.entries import TrackEntry
-from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
 from backend.store.reading import JournalUnavailable
 from backend.store.spool import Spool
-from hardware.readings import Place, Sweep
-from planner.reason import sentence_of
-
-SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
-DRAFT = MissionDrafted(spec=SPEC)
-HOME = Place(lat=50.6, lon=7.2)
-STARTED = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
-SWEEP = Sweep(np.arange(3.0), np.arange(3.0), np.arange(3.0), 868e6, Place(50.6, 7.2), 140.0)
-
-
-def hold(n: int) -> HoldOrdered:
-    return HoldOrdered(craft_id="craft-1", by=str(n), reason=None)
-
-
-@asynccontextmanager
-async def watched(journal: SqlJournal) -> AsyncIterator[None]:
-    task = asyncio.create_task(journal.run())
-    yield
-    task.cancel()
-    with suppress(asyncio.CancelledError):
-        await task
-
-
-async def until(journal: SqlJournal, state: str) -> None:
-    async with asyncio.timeout(30):
-        while journal.report().state != state:  # noqa: ASYNC110 (the report is polled by its users too)
-            await asyncio.sleep(0.02)
-
-
-class Flight:
-    """Writes what a flight writes, and knows what was acknowledged."""
-
-    def __init__(self, journal: SqlJournal) -> None:
-        self.journal = journal
-        self.count = 0
-
-    async def begin(self) -> None:
-        await self.journal.append("m", [DRAFT, STARTED])
-
-    async def go_on(self, steps: int) -> None:
-        for _ in range(steps):
-            n = self.count
-            await self.journal.append("m", [hold(n)])
-            await self.journal.save_sweep("m", f"s{n}", "craft-1", "emitter-1", 1, 1, SWEEP)
-            point = TrackPoint(1.7e9 + n, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)
-            await self.journal.save_track("m", "craft-1", [point])
-            self.count += 1
-
-    async def check(self, stored: SqlJournal) -> None:
-        read = await stored.read("m")
-        assert [record.seq for record in read] == list(range(1, self.count + 3))
-        assert [a(HoldOrdered, record.event).by for record in read[2:]] == [str(n) for n in range(self.count)]
-        assert len((await stored.tracks("m"))["craft-1"]) == self.count
-        for n in range(self.count):
-            assert await stored.sweep("m", f"s{n}") is not None
 
 
 @pytest.fixture
@@ -296,85 +236,6 @@ async def test_an_entry_of_the_spool_that_cannot_be_read_stops_no_start(bench, t
     await Flight(journal).begin()
     assert journal.report().refused == 1
     assert "of a later version" in (tmp_path / "journal.refused").read_text()
-
-
-@pytest.fixture
-def small_disk(tmp_path: Path):
-    """A file system of 2 MB of its own."""
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", folder], capture_output=True)
-    if mounted.returncode:
-        pytest.skip("a small file system cannot be mounted here: " + mounted.stderr.decode().strip())
-    yield folder
-    subprocess.run(["umount", "-l", folder], check=True)
-
-
-async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
-    settings = Settings(data_dir=small_disk, spool_reserve_bytes=256 * 1024, disk_low_bytes=0)
-    async with open_journal(settings, lambda: 1.7e9) as journal:
-        flight = Flight(journal)
-        await flight.begin()
-        filler = small_disk / "filler"
-        with suppress(OSError), filler.open("wb", buffering=0) as file:
-            while True:
-                file.write(bytes(4096))
-        await flight.go_on(60)
-        assert journal.report().state == "lost"
-        assert "full" in sentence_of(known(journal.report().reason))
-        with pytest.raises(JournalUnavailable, match="the disk is full"):
-            await flight.go_on(1000)
-        filler.unlink()
-        await until(journal, "ok")
-        filled = flight.count
-    async with open_journal(settings, lambda: 1.7e9) as journal:
-        read = await journal.read("m")
-        assert [record.seq for record in read] == list(range(1, len(read) + 1))
-        assert filled <= len(read) - 2 <= filled + 1
-    assert sqlite3.connect(small_disk / "crossfix.sqlite").execute("PRAGMA integrity_check").fetchall() == [("ok",)]
-
-
-@pytest.fixture
-def forbidden(tmp_path: Path):
-    """Forbids, or allows again, writing to what lies in a folder, as a disk that became read-only does. What SQLite has
-    mapped into memory stays out: a process that writes there to a file that was forbidden is killed."""
-
-    def forbid(sign: str) -> None:
-        held = [path for path in tmp_path.iterdir() if not path.name.endswith("-shm")]
-        done = subprocess.run(["chattr", sign, *map(str, held), str(tmp_path)], capture_output=True)
-        if done.returncode:
-            pytest.skip("files cannot be made immutable here: " + done.stderr.decode().strip())
-
-    yield forbid
-    forbid("-i")
-
-
-async def test_files_that_cannot_be_written_any_more_are_said_and_stop_nothing(forbidden, tmp_path, caplog):
-    async with open_journal(Settings(data_dir=tmp_path), lambda: 1.7e9) as journal:
-        flight = Flight(journal)
-        await flight.begin()
-        await flight.go_on(2)
-        forbidden("+i")
-        for _ in range(3):
-            with pytest.raises(JournalUnavailable, match="the spool cannot be written"):
-                await flight.go_on(1)
-            await asyncio.sleep(delivery.RETRY_FIRST_S)
-            report = journal.report()
-            assert (report.state, report.spooled) == ("lost", 0)
-            assert isinstance(report.reason, NothingStores)
-        assert len(await journal.read("m")) == 4, "what was stored is read"
-        forbidden("-i")
-        await until(journal, "ok")
-        await flight.go_on(2)
-    assert "did not foresee" not in caplog.text
-    async with open_journal(Settings(data_dir=tmp_path), lambda: 1.7e9) as journal:
-        await flight.check(journal)
-
-
-async def test_a_disk_that_fills_up_is_told_before_it_is_full(tmp_path):
-    async with open_journal(Settings(data_dir=tmp_path, disk_low_bytes=2**60), lambda: 1.7e9) as journal:
-        await until(journal, "slow")
-        assert isinstance(journal.report().reason, DiskLow)
 
 
 WRITER = """
