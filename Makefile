@@ -114,11 +114,15 @@ coverage: kernel ## how much of the code the unit tests run: they take longer so
 	$(UNIT_TESTS) --cov --cov-report=
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
+# These wait for the wall's clock, and a machine that stands still for seconds fails them: what failed once is tried
+# once more, and the summary names it (RERUN), so that it is looked into.
+ONCE_MORE := --reruns 1 -rR
+
 system: setup-dev build ## whole missions over real sockets
-	$(BIN)/pytest tests/system tests/fuzz -m system --durations 8
+	$(BIN)/pytest tests/system tests/fuzz -m system $(ONCE_MORE) --durations 8
 
 stories: setup-dev build browser ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
-	$(BIN)/pytest tests/browser $(BY_FILE) --durations 8
+	$(BIN)/pytest tests/browser $(BY_FILE) $(ONCE_MORE) --durations 8
 
 long: setup-dev ## the kernel against its reference 10,000 times, and tables recomputed: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600
