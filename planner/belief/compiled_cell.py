@@ -136,7 +136,8 @@ def of_cell(x, y, known, past, low, high, apart, table, density, sums):
         times(table[r, low:high], share)
     if len(known.on_way.worth) > 0:
         apart[:] = 0.0
-        log += weigh_stretches(x, y, known.on_way, known.bias, known.spacing, known.scale, known.rate, sums, table)
+        way, scale, rate = known.on_way, known.scale, known.rate
+        log += weigh_stretches(x, y, way, known.bias, known.spacing, scale, rate, sums, density, table)
     return log
 
 

@@ -18,7 +18,13 @@ from planner.belief.evidence import Evidence, SharedOut, Sightings
 from planner.belief.source_errors import Nodes
 from planner.compiling import SOURCES, entry
 from planner.on_the_way import Stretch
+from planner.threads import in_parts
 from planner.types import FloatArray
+
+THREADS = 2
+"""Among which the places are shared out, where stretches of way make each of them dear."""
+WORTH_A_THREAD = 200
+"""Places."""
 
 
 class Weigher:
@@ -27,18 +33,26 @@ class Weigher:
     def __init__(self, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()) -> None:
         self._nodes = nodes
         self._known = prepared(seen, nodes, nodes.weight, stretches)
+        self._threads = THREADS if stretches else 1
 
     def log(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """As there."""
-        found = np.empty(len(x))
-        _log_evidence(_plain(x), _plain(y), self._known, found)
+        x, y, found = _plain(x), _plain(y), np.empty(len(x))
+        parts = min(self._threads, len(x) // WORTH_A_THREAD)
+        in_parts(len(x), parts, lambda part: _log_evidence(x[part], y[part], self._known, found[part]))
         return found
 
     def shared_out(self, x: FloatArray, y: FloatArray, mass: FloatArray) -> SharedOut:
         """As there."""
-        found, mean = np.zeros_like(self._known.prior), np.empty(len(x))
-        _shared_out_over(_plain(x), _plain(y), _plain(mass), self._known, found, mean)
-        table = found.reshape(self._nodes.weight.shape)
+        x, y, mass, mean = _plain(x), _plain(y), _plain(mass), np.empty(len(x))
+        found = dict[int, FloatArray]()
+
+        def work(part: slice) -> None:
+            found[part.start] = np.zeros_like(self._known.prior)
+            _shared_out_over(x[part], y[part], mass[part], self._known, found[part.start], mean[part])
+
+        in_parts(len(x), min(self._threads, len(x) // WORTH_A_THREAD), work)
+        table = np.sum([found[start] for start in sorted(found)], axis=0).reshape(self._nodes.weight.shape)
         return SharedOut(table.sum(axis=(0, 1)), table.sum(axis=(1, 2)), table.sum(axis=(0, 2)), mean)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.belief.compiled_rows import mixed
 from planner.compiling import jit
 from planner.on_the_way import DIRECTIONS, FREEDOM, NEAR_M
 
@@ -83,10 +84,20 @@ def _rescaled(table):
 
 
 @jit
-def weigh_stretches(x, y, heard, bias, spacing, scale, rate, sums, table):
+def _between(root, stride, ratio):
+    """ratio (b,) at every node, its logarithm linear between the coarse ones, where `root` is its stride-th root."""
+    for n in range(len(root) - 1):
+        step, found = root[n + 1] / root[n], root[n] ** stride
+        for b in range(n * stride, min((n + 1) * stride, len(ratio))):
+            ratio[b] = found
+            found *= step
+
+
+@jit
+def weigh_stretches(x, y, heard, bias, spacing, scale, rate, sums, ratio, table):
     """Multiplies (1 - e) f / c + e of every stretch into table (k e, b), for the emitter at (x, y), but for a factor
     whose logarithm is returned: hundreds of stretches leave the range of numbers. sums: (SUMS, n) scratch, n of
-    `coarse_nodes`."""
+    `coarse_nodes`. ratio: (b,) scratch."""
     rates, stride, weighed, log = len(rate), stride_of(spacing), 0, 0.0
     for k in range(len(heard.worth)):
         if _near(x, y, heard, k):
@@ -101,13 +112,11 @@ def weigh_stretches(x, y, heard, bias, spacing, scale, rate, sums, table):
         for s in range(len(scale)):
             for n in range(sums.shape[1]):
                 fit = np.log(1.0 + sums[0, n] / (scale[s] * scale[s]))
-                sums[2, n] = -0.5 * (FREEDOM + worth) * fit - sums[1, n] - heard.log_mean[k, s]
-            for b in range(len(bias)):
-                n = b // stride
-                part = (b - n * stride) / stride
-                ratio = np.exp(sums[2, n] * (1.0 - part) + sums[2, n + 1] * part)
-                for e in range(rates):
-                    table[s * rates + e, b] *= (1.0 - rate[e]) * ratio + rate[e]
+                of_ratio = -0.5 * (FREEDOM + worth) * fit - sums[1, n] - heard.log_mean[k, s]
+                sums[2, n] = np.exp(of_ratio / stride)
+            _between(sums[2], stride, ratio)
+            for e in range(rates):
+                mixed(table[s * rates + e], ratio, 1.0 - rate[e], rate[e])
         weighed += 1
         if weighed % RESCALED_EVERY == 0:
             log += _rescaled(table)

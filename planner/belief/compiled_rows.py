@@ -35,6 +35,13 @@ def weighed_at_once(row, lower, upper, below, above):
 
 
 @jit
+def mixed(row, ratio, share, rest):
+    """A row times what a stretch says at each node, relative to an outlier's density."""
+    for b in range(len(row)):
+        row[b] *= share * ratio[b] + rest
+
+
+@jit
 def copied(row, from_row):
     """Into `row`."""
     for b in range(len(row)):

@@ -5,12 +5,8 @@ The arrays and the arithmetic are the kernels' (planner.kernels); here is who fl
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from functools import cache
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -48,6 +44,7 @@ from planner.policy.actions import flight_window, lattice
 from planner.policy.ellipse import table
 from planner.policy.value_table import ProgramTable
 from planner.reasons import UnusableNumber
+from planner.threads import in_parts
 from planner.travel import VisibilityGraph, lattice_distances, straight_suffices, travel_distances, visibility_graph
 from planner.types import FloatArray, FullMotion, IntArray, LinearConstantMotion, LinearMotion, PlannerError, Problem
 
@@ -111,31 +108,13 @@ class Simulation:
         """Outcomes of all tasks, cut rollouts closed by the terminal value; tasks are shared out to the threads."""
         out = outcomes(len(tasks.action))
         kernel = compiled.rollouts if self.kernel == "compiled" else reference.rollouts
-        parts = max(1, min(self.threads, len(tasks.action) // 8))
-        if parts == 1:
-            kernel(self.start, self.rules, actions, paths, tasks, out)
-        else:
-            cuts = np.linspace(0, len(tasks.action), parts + 1).astype(int)
-            own, *others = [slice(a, b) for a, b in pairwise(cuts)]
-            shared, helpers = (self.start, self.rules, actions, paths), _helpers(os.getpid(), parts - 1)
-            jobs = [helpers.submit(kernel, *shared, tasks.part(s), out.part(s)) for s in others]
-            try:
-                kernel(*shared, tasks.part(own), out.part(own))
-            finally:
-                wait(jobs)
-            for job in jobs:
-                job.result()
+        parts = min(self.threads, len(tasks.action) // 8)
+        shared = (self.start, self.rules, actions, paths)
+        in_parts(len(tasks.action), parts, lambda part: kernel(*shared, tasks.part(part), out.part(part)))
         if self.terminal is not None:
             cut = out.ends[:, 9] == 0.0
             out.costs[cut] += self.terminal(out.ends[cut])
         return out
-
-
-@cache
-def _helpers(process: int, count: int) -> ThreadPoolExecutor:
-    """Threads that stay: to begin and end two took 0.18 ms a call, and a plan calls once a round. By process, because
-    one that was forked has none of its parent's threads."""
-    return ThreadPoolExecutor(count, thread_name_prefix="rollouts")
 
 
 def simulate(
