@@ -19,6 +19,8 @@ PER_RADIAN = DIRECTIONS / (2.0 * np.pi)
 FINE_ENOUGH = np.deg2rad(2.0)
 RESCALED_EVERY = 16
 """Stretches: none multiplies by less than the rate of outliers, or by more than a bearing's peak."""
+LEAST_LOG = -200.0
+"""Of a root, so that none is 0, by which the next would be divided."""
 SUMS = 4
 """Of weights, weighted residuals, their squares, and logarithms of variances."""
 
@@ -113,7 +115,7 @@ def weigh_stretches(x, y, heard, bias, spacing, scale, rate, sums, ratio, table)
             for n in range(sums.shape[1]):
                 fit = np.log(1.0 + sums[0, n] / (scale[s] * scale[s]))
                 of_ratio = -0.5 * (FREEDOM + worth) * fit - sums[1, n] - heard.log_mean[k, s]
-                sums[2, n] = np.exp(of_ratio / stride)
+                sums[2, n] = np.exp(max(of_ratio / stride, LEAST_LOG))
             _between(sums[2], stride, ratio)
             for e in range(rates):
                 mixed(table[s * rates + e], ratio, 1.0 - rate[e], rate[e])

@@ -141,6 +141,26 @@ def test_the_compiled_evidence_is_that_of_the_readable_one() -> None:
         assert np.ptp(plain.log - without.log) > 1.0
 
 
+def test_places_shared_out_to_threads_are_those_of_the_readable_one() -> None:
+    rng = np.random.default_rng(8)
+    x, y = rng.uniform(-150.0, 250.0, (2, 2 * compiled_evidence.WORTH_A_THREAD + 1))
+    stretches, grid = [stretch(200.0, noise=3.0), stretch(330.0, noise=3.0, seed=2)], nodes(ErrorPrior(), SIGMA, 4)
+    seen = sightings([Bearing(0.0, 0.0, 0.8, SIGMA, source="craft")])
+    fast, plain = (way.Weigher(seen, grid, stretches) for way in (compiled_evidence, evidence))
+    assert fast.log(x, y) == pytest.approx(plain.log(x, y), abs=0.05)
+    mass = rng.dirichlet(np.ones(len(x)))
+    for ours, theirs in zip(fast.shared_out(x, y, mass), plain.shared_out(x, y, mass), strict=True):
+        assert ours == pytest.approx(theirs, abs=0.01)
+
+
+def test_a_stretch_that_fits_nowhere_speaks_as_loud_as_an_outlier_and_leaves_numbers() -> None:
+    wild = replace(stretch(330.0), power_db=tuple(1e6 * (-1.0) ** k for k in range(len(stretch(330.0).power_db))))
+    grid = nodes(ErrorPrior(), SIGMA, 4)
+    x, y = np.random.default_rng(9).uniform(-150.0, 250.0, (2, 20))
+    log = compiled_evidence.Weigher(sightings([]), grid, [wild, stretch(90.0)]).log(x, y)
+    assert np.isfinite(log).all()
+
+
 def test_hundreds_of_stretches_stay_within_the_range_of_numbers() -> None:
     """A mission of twenty legs of 480 m has as many."""
     x, y = np.array([80.0, -120.0, 200.0]), np.array([90.0, 60.0, -10.0])
