@@ -36,6 +36,7 @@ ROWS: Mapping[str, FieldOptions] = {
     "whole": FieldOptions(),
     "sector": FieldOptions(turns="sector"),
     "swings": FieldOptions(turns="sector", listens="way_swinging"),
+    "swings_whole": FieldOptions(listens="way_swinging"),
     "never_stopping": FieldOptions(listens="never_stopping"),
     "wedge": FieldOptions(errors="independent"),
     "widened": FieldOptions(errors="independent"),
