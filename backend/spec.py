@@ -202,7 +202,8 @@ class SensorSpec(Model):
     joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
     stored specification that does not say so means that each is judged by itself.
     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
-    means whole turns. whole_turns: from how many places all directions are heard before sectors are.
+    means whole turns, and where it never stops they are whole whatever it says. whole_turns: from how many places all
+    directions are heard before sectors are.
     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
     beyond what its antenna's file says; it is taken off where they are made. listen_on_the_way: of joint errors, what
     is heard between places counts too; a stored specification that does not say so means that it does not.
@@ -232,6 +233,11 @@ class SensorSpec(Model):
     listen_on_the_way: bool = False
     swing_on_the_way: bool = False
     never_stop: bool = False
+
+    @property
+    def turns_in_sectors(self) -> bool:
+        """A turn of a mission that never stops is made in order to look elsewhere than expected: once around."""
+        return self.sector_turns and not self.never_stop
 
 
 class PlannerSpec(Model):

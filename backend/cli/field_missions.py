@@ -323,7 +323,7 @@ class FieldStudy:
         attempt: int,
     ) -> TurnPlan:
         because = must_be_whole(self.spec, measured, attempt)
-        if not self.spec.sensor.sector_turns or because is not None:
+        if not self.spec.sensor.turns_in_sectors or because is not None:
             return whole_turn(because or "first")
         return planned_turn(expected_here(task, belief, measured, here))
 

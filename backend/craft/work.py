@@ -147,7 +147,7 @@ class Work:
     def _turn_at(self, place: tuple[float, float], attempt: int) -> TurnPlan | None:
         """The turn at a place (m ENU), from what is known now; None: this mission turns once around everywhere."""
         mission, search = self.task.mission, self.search()
-        if not mission.sensor.sector_turns:
+        if not mission.sensor.turns_in_sectors:
             return None
         because = must_be_whole(mission, search.measured, attempt)
         if because is not None:

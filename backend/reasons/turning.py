@@ -134,7 +134,7 @@ class WayToldEnough:
 class NeverStopNeeds:
     """What the option of never stopping to turn asks for."""
 
-    what: Literal["one_emitter", "carrier", "still", "joint", "swings", "whole_turns", "rollouts"]
+    what: Literal["one_emitter", "carrier", "still", "joint", "swings", "rollouts"]
     code: Literal["never_stop_needs"] = "never_stop_needs"
     english: ClassVar[Words] = Words(
         "Never stopping to turn {what?one_emitter=is for one emitter: the nose swings about one direction"
@@ -142,11 +142,10 @@ class NeverStopNeeds:
         "|still=is for an emitter that stands still"
         "|joint=needs joint bearing errors"
         "|swings=needs listening on the way and the nose's swings there"
-        "|whole_turns=does not go with sectors: where it turns after all, it hears all directions"
         "|rollouts=needs the planner that simulates flights}.",
         "{what?one_emitter=Turn it off, or look for one emitter|carrier=Turn it off"
         "|still=Turn it off|joint=Choose joint errors, or turn it off"
-        "|swings=Turn both on, or turn this off|whole_turns=Turn one of them off"
+        "|swings=Turn both on, or turn this off"
         "|rollouts=Choose that planner, or turn this off}.",
     )
 

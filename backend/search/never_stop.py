@@ -57,8 +57,6 @@ def _needs(mission: MissionSpec) -> NeverStopNeeds | None:
         return NeverStopNeeds("joint")
     if not sensor.listen_on_the_way or not sensor.swing_on_the_way:
         return NeverStopNeeds("swings")
-    if sensor.sector_turns:
-        return NeverStopNeeds("whole_turns")
     if mission.planner.method != "rollout":
         return NeverStopNeeds("rollouts")
     return None

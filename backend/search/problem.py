@@ -88,7 +88,7 @@ def prior_belief_of(problem: Problem, sensor: spec.SensorSpec, movement: spec.Mo
 def _sector_turns(mission: MissionSpec) -> SectorTurns | None:
     """None: every turn is a whole one, as it always is for several emitters and for tags."""
     (emitter, *others) = mission.emitters
-    if others or emitter.kind == "pulsed" or not mission.sensor.sector_turns:
+    if others or emitter.kind == "pulsed" or not mission.sensor.turns_in_sectors:
         return None
     return SectorTurns(math.radians(mission.sensor.turn_rate_deg_s))
 

@@ -346,9 +346,14 @@ class CompassKnown(Model):
 
 
 class WhatIfRequest(Supposition):
-    """The decision after this many of the flown bearings that count, taken again."""
+    """The decision after this many of the flown bearings that count, taken again.
+
+    until: number of the last event that had happened by then, since legs are heard between bearings; None: all until
+    the next bearing.
+    """
 
     bearings: int = Field(ge=0, le=200)
+    until: int | None = Field(default=None, ge=0)
 
 
 class WhatIfStep(Model):

@@ -30,6 +30,7 @@ it("what does not apply is not asked for", () => {
   const turning = set(spec, "sensor.sector_turns", true);
   expect(asked(turning)).toContain("whole_turns");
   expect(asked(set(turning, `${EMITTER}.kind`, "pulsed"))).not.toContain("sector_turns");
+  expect(asked(set(turning, "sensor.never_stop", true))).not.toContain("sector_turns");
 });
 
 it("numbers are read as people type them", () => {

@@ -50,7 +50,9 @@ const number = (path: string, label: MessageKey, unit: Unit, limits: Partial<Num
 
 const isJoint = ({ sensor }: MissionSpec) => sensor.bearing_errors === "joint";
 
-/** A tag's pulses, and several emitters at once, take whole turns. */
+/** A tag's pulses, several emitters at once, and a craft that turns only in order to look elsewhere take whole turns. */
+const mayTurnInSectors = (spec: MissionSpec) => isOneCarrier(spec) && spec.sensor.never_stop !== true;
+
 /** Also where it is on and may not be: it has to be there to be turned off. */
 const mayNeverStop = (spec: MissionSpec) =>
   spec.sensor.never_stop === true ||
@@ -92,13 +94,13 @@ export const sections: readonly Section[] = [
       number("sensor.turn_rate_deg_s", "edit.turnRate", "°/s", { min: 5, max: 90, more: true }),
       number("sensor.minimum_quality", "edit.quality", "", { min: 0, max: 1, step: 0.05, more: true }),
       number("sensor.maximum_retakes", "edit.retakes", "times", { min: 0, max: 10, step: 1, more: true }),
-      { kind: "switch", path: "sensor.sector_turns", label: "edit.sectorTurns", when: isOneCarrier },
+      { kind: "switch", path: "sensor.sector_turns", label: "edit.sectorTurns", when: mayTurnInSectors },
       number("sensor.whole_turns", "edit.wholeTurns", "places", {
         min: 1,
         max: 20,
         step: 1,
         more: true,
-        when: (spec) => isOneCarrier(spec) && spec.sensor.sector_turns === true,
+        when: (spec) => mayTurnInSectors(spec) && spec.sensor.sector_turns === true,
       }),
       {
         kind: "choice",

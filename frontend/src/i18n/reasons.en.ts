@@ -1910,9 +1910,9 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   never_stop_needs: {
-    text: "Never stopping to turn {what?one_emitter=is for one emitter: the nose swings about one direction|carrier=is for a carrier: a tag's pulses are too few on the way|still=is for an emitter that stands still|joint=needs joint bearing errors|swings=needs listening on the way and the nose's swings there|whole_turns=does not go with sectors: where it turns after all, it hears all directions|rollouts=needs the planner that simulates flights}.",
+    text: "Never stopping to turn {what?one_emitter=is for one emitter: the nose swings about one direction|carrier=is for a carrier: a tag's pulses are too few on the way|still=is for an emitter that stands still|joint=needs joint bearing errors|swings=needs listening on the way and the nose's swings there|rollouts=needs the planner that simulates flights}.",
     remedy:
-      "{what?one_emitter=Turn it off, or look for one emitter|carrier=Turn it off|still=Turn it off|joint=Choose joint errors, or turn it off|swings=Turn both on, or turn this off|whole_turns=Turn one of them off|rollouts=Choose that planner, or turn this off}.",
+      "{what?one_emitter=Turn it off, or look for one emitter|carrier=Turn it off|still=Turn it off|joint=Choose joint errors, or turn it off|swings=Turn both on, or turn this off|rollouts=Choose that planner, or turn this off}.",
   },
   neither_way_nor_barrier: {
     text: "{parts|part is|parts are} left out: nothing says whether it is a road, a path or a barrier.",

@@ -5273,7 +5273,7 @@ export interface components {
         /** @description What the option of never stopping to turn asks for. */
         NeverStopNeeds: {
             /** @enum {string} */
-            what: "one_emitter" | "carrier" | "still" | "joint" | "swings" | "whole_turns" | "rollouts";
+            what: "one_emitter" | "carrier" | "still" | "joint" | "swings" | "rollouts";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -7754,7 +7754,8 @@ export interface components {
          *     joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
          *     stored specification that does not say so means that each is judged by itself.
          *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
-         *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
+         *     means whole turns, and where it never stops they are whole whatever it says. whole_turns: from how many places all
+         *     directions are heard before sectors are.
          *     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
          *     beyond what its antenna's file says; it is taken off where they are made. listen_on_the_way: of joint errors, what
          *     is heard between places counts too; a stored specification that does not say so means that it does not.
@@ -7813,7 +7814,8 @@ export interface components {
          *     joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
          *     stored specification that does not say so means that each is judged by itself.
          *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
-         *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
+         *     means whole turns, and where it never stops they are whole whatever it says. whole_turns: from how many places all
+         *     directions are heard before sectors are.
          *     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
          *     beyond what its antenna's file says; it is taken off where they are made. listen_on_the_way: of joint errors, what
          *     is heard between places counts too; a stored specification that does not say so means that it does not.
@@ -9331,7 +9333,12 @@ export interface components {
             name: string;
             offset_to_nose_deg: number;
         };
-        /** @description The decision after this many of the flown bearings that count, taken again. */
+        /**
+         * @description The decision after this many of the flown bearings that count, taken again.
+         *
+         *     until: number of the last event that had happened by then, since legs are heard between bearings; None: all until
+         *     the next bearing.
+         */
         WhatIfRequest: {
             emitter_id?: string | null;
             without?: string[];
@@ -9346,6 +9353,7 @@ export interface components {
             estimator?: ("map" | "expected_value" | "geometric_median") | null;
             budget?: number | null;
             bearings: number;
+            until?: number | null;
         };
         /** @description After this many flown bearings: what would have been said, and what was (None: nothing was said then). */
         WhatIfStep: {

@@ -55,7 +55,6 @@ def test_a_mission_that_has_all_it_needs_may() -> None:
         (asking(bearing_errors="independent"), "joint"),
         (asking(listen_on_the_way=False), "swings"),
         (asking(swing_on_the_way=False), "swings"),
-        (asking(sector_turns=True), "whole_turns"),
         (asking(method="base_policy"), "rollouts"),
     ],
 )

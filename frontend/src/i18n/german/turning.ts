@@ -46,12 +46,11 @@ export const turning = {
       "|still=geht mit einem Sender, der sich nicht bewegt" +
       "|joint=braucht gemeinsam geschätzte Peilfehler" +
       "|swings=braucht das Hören unterwegs und das Pendeln der Nase" +
-      "|whole_turns=verträgt sich nicht mit Sektoren: Wo es doch dreht, hört es alle Richtungen" +
       "|rollouts=braucht den Planer, der Flüge simuliert}.",
     remedy:
       "{what?one_emitter=Abschalten oder nur einen Sender suchen|carrier=Abschalten" +
       "|still=Abschalten|joint=Fehler gemeinsam schätzen lassen oder abschalten" +
-      "|swings=Beides einschalten oder dies abschalten|whole_turns=Eines von beiden abschalten" +
+      "|swings=Beides einschalten oder dies abschalten" +
       "|rollouts=Diesen Planer wählen oder dies abschalten}.",
   },
   nothing_found_yet: {
