@@ -41,11 +41,12 @@ the antenna that flew is named at the start or the import."""
 def what_if(
     mission_id: str, recorded: Sequence[Recorded], wanted: WhatIfRequest, antenna: AnotherAntenna | None = None
 ) -> WhatIf | None:
-    """None when the mission had fewer bearings. Heavy (a plan of one thread): call it off the event loop.
+    """None when the mission had fewer bearings by then. Heavy (a plan of one thread): call it off the event loop.
 
     recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken again, None: they stay as flown.
     """
-    found = suppose(recorded, wanted, wanted.bearings, antenna)
+    happened = [one for one in recorded if wanted.until is None or one.seq <= wanted.until]
+    found = suppose(happened, wanted, wanted.bearings, antenna)
     if found is None:
         return None
     task, bearings, supposed = found.task, found.counted, found.sweeps

@@ -5,9 +5,10 @@ import { asProblem } from "../commands/send";
 import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
 import type { Supposition } from "../sources/coursesApi";
+import { momentSeq } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
-import { flownBearings, supposed, supposedHere } from "../state/supposed";
+import { flownBearings, flownLegs, supposed, supposedHere } from "../state/supposed";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
@@ -180,8 +181,9 @@ export function WhatIfPanel() {
     setAsking(true);
     setProblem(null);
     try {
-      const answer = await api.whatIf(missionId, { ...(await supposition()), bearings: counted });
-      supposed.value = { missionId, bearings: counted, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
+      const [legs, until] = [flownLegs.value, momentSeq.value];
+      const answer = await api.whatIf(missionId, { ...(await supposition()), bearings: counted, until });
+      supposed.value = { missionId, bearings: counted, legs, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
     } catch (error) {
       setProblem(asProblem(error));
     } finally {

@@ -6,8 +6,9 @@ import { cursor, happened } from "./moment";
 
 export interface Supposed {
   missionId: string;
-  /** Counted bearings after which the decision is taken. */
+  /** Counted bearings after which the decision is taken, and legs. */
   bearings: number;
+  legs: number;
   answer: WhatIf;
   frame: BeliefFrame;
 }
@@ -17,10 +18,13 @@ export const supposed = signal<Supposed | null>(null);
 /** The bearings that count at the moment shown, as they were flown. */
 export const flownBearings = computed(() => happened.value.bearings.filter((b) => !b.excluded).map((b) => b.fact));
 
-/** Only in the review, only for the emitter asked about, and only where as many bearings count as the question had. */
+/** The legs that count then. */
+export const flownLegs = computed(() => happened.value.ways.filter((w) => !w.excluded).length);
+
+/** Only in the review, only for the emitter asked about, and only where as many bearings and legs count as the question had. */
 export const supposedHere = computed<Supposed | null>(() => {
   const what = supposed.value;
   if (!what || cursor.value === null || what.missionId !== happened.value.missionId) return null;
   if (what.answer.belief.emitter_id !== happened.value.emitterId) return null;
-  return flownBearings.value.length === what.bearings ? what : null;
+  return flownBearings.value.length === what.bearings && flownLegs.value === what.legs ? what : null;
 });

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from facts import OWN, PERSON, bearing, belief
 from ground import AREA, FRAME, HOME, towards
+from legs import TARGET, way
 from search_walk import SearchWalk, facts_of, refusal
 
 from backend import commands
@@ -18,33 +19,11 @@ from backend.reasons import refusals
 from backend.search.effects import UpdateBelief
 from backend.search.inputs import BeliefReady
 from backend.search.localization import Localization, localization
-from backend.search.way_facts import Leg, stretches_of, way_fact
+from backend.search.way_facts import stretches_of
 from backend.spec import FIRST_EMITTER, EmitterSpec, MissionSpec, MovementSpec, SensorSpec
-from hardware.direction_finding.antenna import AntennaPattern
-from hardware.readings import HeadingSample, PowerSample
 from hardware.reasons.on_the_way import ReadingsLeftOut
 from planner.belief.grid import digest
 from planner.belief.joint import JointBelief
-
-TARGET = (120.0, 60.0)
-PATTERN = AntennaPattern("test", np.array([0.0, 90.0, 180.0, 270.0]), np.array([0.0, -8.0, -15.0, -8.0]))
-SENSOR = SensorSpec(bearing_errors="joint")
-
-
-def way(turn_deg_s: float = 30.0, leg_id: str = "leg-1", target: tuple[float, float] = TARGET) -> HeardOnTheWay:
-    """A leg of 100 m eastward from home, heard through the pattern from the target."""
-    at = np.arange(0.0, 12.5, 0.1)
-    samples, headings = [], []
-    for t in at:
-        x, nose = 8.0 * float(t), turn_deg_s * float(t)
-        bearing_deg = math.degrees(math.atan2(target[0] - x, target[1]))
-        gain = float(PATTERN.gain_at(np.array([(bearing_deg - nose) % 360.0]))[0])
-        power = -50.0 + gain - 20.0 * math.log10(math.hypot(target[0] - x, target[1]))
-        samples.append(PowerSample(float(t), 868.3e6, power, -130.0))
-        headings.append(HeadingSample(float(t), nose % 360.0, FRAME.to_geo(x, 0.0)))
-    leg = Leg(OWN, 1, HOME, (HOME, FRAME.to_geo(100.0, 0.0)))
-    found = way_fact(leg, FIRST_EMITTER, SENSOR, PATTERN, samples, headings)
-    return found.model_copy(update={"leg_id": leg_id})
 
 
 def task(**sensor: object) -> Localization:
