@@ -20,7 +20,7 @@ import { missionAddress } from "../state/route";
 import { mission, shownTimeMs } from "../state/shown";
 import { toneOfPhase } from "../state/tone";
 import { vehicle } from "../state/vehicle";
-import { authorityWords, reviewWords, stateWords, waitsWords } from "../state/words";
+import { authorityWords, noseWords, reviewWords, stateWords, waitsWords } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
 import { ControlAsked, ControlButton } from "./ControlButton";
@@ -276,6 +276,7 @@ function Words() {
 
   const startedMs = shown.startedAt ? Date.parse(shown.startedAt) : null;
   const waits = waitsWords(shown, cursor.value === null ? resumeRefused.value : null);
+  const nose = noseWords(shown);
   return (
     <div class="words">
       <div
@@ -293,6 +294,7 @@ function Words() {
       <div class="state-more">
         <span data-testid="control">{controlWords()}</span>
         {waits && <span data-testid="waits-for">{t("state.waitsFor", { what: waits })}</span>}
+        {nose && <span data-testid="nose">{nose}</span>}
         {startedMs !== null && (
           <span data-testid="mission-time" title={shown.spec?.name}>
             {t("state.time", { duration: formatDuration((shownTimeMs.value - startedMs) / 1000) })}

@@ -31,18 +31,18 @@ type Turn = NonNullable<BearingMeasured["turn"]>;
 const sectorOf = (turn: Turn | null): PolarData["sector"] =>
   turn && turn.turned_deg < 355 ? { beginDeg: turn.begin_deg, turnedDeg: turn.turned_deg, goalDeg: turn.turned_deg } : null;
 
-/** How far the craft turned for this sweep, and why: one line a decision. */
+/** How far the craft turned for this sweep; opened, why: one line a decision. */
 function TurnWords({ turn }: { turn: Turn }) {
   const whys = [turn.planned_because, ...turn.went_on_because, turn.stopped_because];
   return (
-    <>
-      <div>{t("sweep.turnedSector", { turned: Math.round(turn.turned_deg), begin: formatBearing(turn.begin_deg) })}</div>
-      <ol class="sweep-turn" data-testid="sweep-turn">
+    <details class="sweep-turn" data-testid="sweep-turn">
+      <summary>{t("sweep.turnedSector", { turned: Math.round(turn.turned_deg), begin: formatBearing(turn.begin_deg) })}</summary>
+      <ol>
         {whys.map((why, i) => (
           <li key={`${i} ${why.code}`}>{reasonText(why)}</li>
         ))}
       </ol>
-    </>
+    </details>
   );
 }
 
@@ -129,7 +129,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
   const id = cursor.value === null && !mission.value.ended ? mission.value.missionId : null;
   if (fact.kind === "sweep_rejected") {
     return (
-      <div class="sweep-facts">
+      <>
         <strong>{t("sweep.place", { number: fact.place_number })}</strong>
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
@@ -139,11 +139,11 @@ function Facts({ sweep }: { sweep: Sweep }) {
           <CountButton id={id} of={fact.sweep_id} leftOut={excluded} words={excluded ? "sweep.silence.include" : "sweep.silence.exclude"} />
         )}
         {fact.turn && <TurnWords turn={fact.turn} />}
-      </div>
+      </>
     );
   }
   return (
-    <div class="sweep-facts">
+    <>
       <div class="sweep-head">
         <div>
           <strong>
@@ -156,9 +156,11 @@ function Facts({ sweep }: { sweep: Sweep }) {
         </div>
         {id && <CountButton id={id} of={fact.bearing_id} leftOut={leftOut} words={leftOut ? "sweep.include" : "sweep.exclude"} />}
       </div>
-      <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
-      {fact.snr_db !== null && <div>{t("sweep.snr", { snr: formatNumber(fact.snr_db, 0) })}</div>}
-      <div>{t("sweep.drift", { length: formatLength(fact.drift_m, settings.value.units) })}</div>
+      <div class="sweep-values">
+        <span>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</span>
+        {fact.snr_db !== null && <span>{t("sweep.snr", { snr: formatNumber(fact.snr_db, 0) })}</span>}
+        <span>{t("sweep.drift", { length: formatLength(fact.drift_m, settings.value.units) })}</span>
+      </div>
       {fact.peaks.length > 0 && (
         <div>
           {t("sweep.peaks", {
@@ -175,7 +177,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
         </div>
       ))}
       {id && <MuteButton id={id} source={fact.source} />}
-    </div>
+    </>
   );
 }
 
@@ -186,6 +188,8 @@ export function SweepPanel() {
   const running = cursor.value === null && state.phase === "measuring" ? sweepHeard.value : null;
   const sweep = sweeps.find((s) => s.seq === picked) ?? sweeps[0];
   const showRunning = running?.mission_id === state.missionId && picked === null;
+  const ways = <OnTheWay ways={state.ways} />;
+  const beside = sweep && !(running && showRunning);
   return (
     <section class="panel sweep" data-testid="sweep" data-tour="4" aria-label={t("sweep.title")}>
       <h2>
@@ -218,12 +222,15 @@ export function SweepPanel() {
       ) : sweep ? (
         <div class="sweep-body">
           <PolarPlot data={polarOf(sweep)} />
-          <Facts sweep={sweep} />
+          <div class="sweep-facts">
+            <Facts sweep={sweep} />
+            {ways}
+          </div>
         </div>
       ) : (
         <p class="muted">{t("sweep.none")}</p>
       )}
-      <OnTheWay ways={state.ways} />
+      {!beside && ways}
     </section>
   );
 }

@@ -3,7 +3,7 @@ import { someLeg } from "../wire/examples";
 import { noseWords, wayWords, whyLeftOut } from "./wayWords";
 
 it("says of a leg how much of it counts and how far the antenna turned", () => {
-  expect(wayWords(someLeg())).toBe("On the way to place 2: 2 × 20 m used, antenna turned 120°");
+  expect(wayWords(someLeg())).toBe("On the way to place 2: 2 × 20 m used, turned 120°");
 });
 
 it("says honestly that a leg told nothing, and why", () => {

@@ -72,17 +72,20 @@ function passesNext({ spec, bearings }: MissionView): boolean {
   return spec?.sensor.never_stop === true && bearings.some(({ fact, excluded }) => fact.source.kind === "craft" && !excluded);
 }
 
+/** What the nose does on the way; null: it keeps still. */
+export function noseWords(mission: MissionView): string | null {
+  if (mission.phase !== "flying" || !noseSwings(mission.spec)) return null;
+  return t(passesNext(mission) ? "state.noTurnNext" : "state.noseSwings");
+}
+
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
 export function stateWords(mission: MissionView, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.nextPlaceNumber;
   const because = isOver(mission.phase) ? mission.ended?.fact.reason : mission.phaseReason;
   const reason = because ? reasonText(because) : phaseName(mission.phase);
   switch (mission.phase) {
-    case "flying": {
-      const flies = etaS === null ? t("state.flying", { number }) : t("state.flyingEta", { number, time: formatDuration(etaS) });
-      if (!noseSwings(mission.spec)) return flies;
-      return `${flies} · ${t(passesNext(mission) ? "state.listensOnTheWay" : "state.noseSwings")}`;
-    }
+    case "flying":
+      return etaS === null ? t("state.flying", { number }) : t("state.flyingEta", { number, time: formatDuration(etaS) });
     case "planning":
       return t("state.planning", { number: mission.nextPlaceNumber });
     case "measuring":
