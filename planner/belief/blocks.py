@@ -16,6 +16,8 @@ from planner.types import BoolArray, FloatArray
 
 FEW_CELLS = 3000
 """Grids of fewer are weighed cell by cell."""
+FEW_DEAR_CELLS = 700
+"""The same where stretches of way make each cell a hundred times as dear."""
 WIDEST = 4
 """Cells along the side of the largest blocks: at least three lie across the 95 % region of a refined grid."""
 EVEN = 3e-3
@@ -38,10 +40,11 @@ Weigh = Callable[[FloatArray, FloatArray], FloatArray]
 """x, y (c,) to the logarithm (c,) of the likelihood there."""
 
 
-def weighed_in_blocks(prior: FloatArray, x0: float, y0: float, h: float, weigh: Weigh) -> Places:
-    """prior: (ny, nx) mass of the cells, not all of them 0; x0, y0: south-west corner, m ENU; h: cell size, m."""
+def weighed_in_blocks(prior: FloatArray, x0: float, y0: float, h: float, weigh: Weigh, few: int = FEW_CELLS) -> Places:
+    """prior: (ny, nx) mass of the cells, not all of them 0; x0, y0: south-west corner, m ENU; h: cell size, m. few:
+    cells that are not worth blocks."""
     side = 1
-    while side < WIDEST and prior.size / side**2 > FEW_CELLS:
+    while side < WIDEST and prior.size / side**2 > few:
         side *= 2
     ny, nx = prior.shape
     padded = np.pad(prior, ((0, -ny % side), (0, -nx % side)))

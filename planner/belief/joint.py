@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from planner.belief import compiled_evidence, evidence
-from planner.belief.blocks import Places, weighed_in_blocks
+from planner.belief.blocks import FEW_CELLS, FEW_DEAR_CELLS, Places, weighed_in_blocks
 from planner.belief.evidence import SMALLEST_SIGMA, sightings
 from planner.belief.grid import (
     COARSE_CELLS,
@@ -210,7 +210,8 @@ def _weighed(belief: JointBelief, sources: Sequence[_Source]) -> tuple[JointBeli
         log = silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else np.zeros(len(x))
         return sum((one.weigher.log(x, y) for one in sources), start=log)
 
-    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh)
+    few = FEW_DEAR_CELLS if belief.stretches else FEW_CELLS
+    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few)
     return replace(belief, density=places.density), places
 
 

@@ -23,7 +23,9 @@ def ridges(x: FloatArray, y: FloatArray, count: int = 3, sigma: float = 0.1, out
     return log
 
 
-def weighed(prior: FloatArray, log: Callable[..., FloatArray], **given: float) -> tuple[Places, int]:
+def weighed(
+    prior: FloatArray, log: Callable[..., FloatArray], few: int = blocks.FEW_CELLS, **given: float
+) -> tuple[Places, int]:
     """The places, and how many blocks were weighed."""
     asked = 0
 
@@ -32,7 +34,7 @@ def weighed(prior: FloatArray, log: Callable[..., FloatArray], **given: float) -
         asked += len(x)
         return log(x, y, **given)
 
-    return weighed_in_blocks(prior, 0.0, 0.0, 1.0, weigh), asked
+    return weighed_in_blocks(prior, 0.0, 0.0, 1.0, weigh, few), asked
 
 
 def whole(prior: FloatArray, log: Callable[..., FloatArray], **given: float) -> FloatArray:
@@ -80,6 +82,15 @@ def test_few_cells_are_all_weighed() -> None:
     found, asked = weighed(prior, ridges)
     assert asked == np.count_nonzero(prior) <= blocks.FEW_CELLS
     assert found.density == pytest.approx(whole(prior, ridges), abs=1e-15)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_of_dear_cells_fewer_are_weighed_for_nearly_the_same(count: int) -> None:
+    prior = bumpy(3)
+    _, of_cheap = weighed(prior, ridges, count=count)
+    found, asked = weighed(prior, ridges, blocks.FEW_DEAR_CELLS, count=count)
+    assert asked < 0.9 * of_cheap
+    assert 0.5 * np.abs(found.density - whole(prior, ridges, count=count)).sum() < 2e-3
 
 
 def test_all_of_one_place_is_all_there_is() -> None:
