@@ -23,17 +23,22 @@ PLANNER = PlannerSpec(
 """`crossfix study run --planner crossfix` is the planner at these settings."""
 
 
+SENSOR = SensorSpec(
+    bearing_errors="joint", shared_errors=True, sector_turns=True, listen_on_the_way=True, swing_on_the_way=True
+)
+"""Errors of bearings are estimated with the place; a turn goes only as far as its bearing needs, and the nose swings
+between places so that what is heard there counts: decision 62 says what that brings."""
+
+
 def suggested_mission(home: Place) -> MissionSpec:
-    """Planned by our own planner, the errors of bearings estimated with the place; all other values are the
-    specification's defaults. The home lies on the area's southern edge."""
+    """With our own planner and `SENSOR`; all other values are the specification's defaults. The home lies on the area's
+    southern edge."""
     frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return MissionSpec(
-        name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint", shared_errors=True), planner=PLANNER
-    )
+    return MissionSpec(name=NAME, area=area, sensor=SENSOR, planner=PLANNER)
 
 
 ESTIMATED = {"bearing_errors": "joint", "shared_errors": True}

@@ -98,7 +98,7 @@ def demo(
     headless: Annotated[bool, typer.Option("--headless", help="No browser: fly, print the result, stop.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the simulated world and of the planner.")] = 1,
     speedup: Annotated[
-        float | None, typer.Option(help="Simulated seconds a second of the wall. Default: 10, with --vehicle 1.")
+        float | None, typer.Option(help="Simulated seconds a second of the wall. Default: 5, with --vehicle 1.")
     ] = None,
     flavour: Annotated[str | None, typer.Option(help="Simulated autopilot: px4 or ardupilot. Default: px4.")] = None,
     vehicle: Annotated[
@@ -142,7 +142,7 @@ def demo(
 ) -> None:
     """Fly one whole mission: a simulated emitter, a simulated or real vehicle, the real server and its websocket.
 
-    Example: crossfix demo --headless --seed 3 --speedup 10 --json
+    Example: crossfix demo --headless --seed 3 --json
     """
     folder = data_dir or Path(tempfile.mkdtemp(prefix="crossfix-demo-"))
     try:
@@ -153,7 +153,7 @@ def demo(
             vehicle_url=vehicle,
             simulate=flavour,
             simulated_flies_on=False,
-            time_factor=speedup if speedup is not None else (10.0 if vehicle is None else 1.0),
+            time_factor=speedup if speedup is not None else (5.0 if vehicle is None else 1.0),
             seed=seed,
             world=world,
             simulated_band_hz=None if band is None else band * 1000.0,

@@ -71,6 +71,8 @@ LOOK_S = 1.0
 SWINGING: tuple[Listens, ...] = ("way_swinging", "never_stopping")
 Turns = Literal["whole", "sector"]
 Errors = Literal["joint", "independent"]
+AS_FLOWN: tuple[Turns, Listens] = ("sector", "way_swinging")
+"""In new missions."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, cast, get_args
 
 import typer
@@ -11,7 +12,7 @@ import typer
 from backend.cli.edge import print_json, remark
 from backend.cli.field_legs import Listens
 from backend.cli.field_lessons import taught
-from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, Turns
+from backend.cli.field_missions import AS_FLOWN, PLANNERS, FieldMission, FieldOptions, FieldStudy, Turns
 from backend.cli.field_summary import FieldSummary, summary
 from backend.simulation.field_world import Antenna
 from planner.study.errors import StudyError
@@ -34,11 +35,20 @@ COLUMNS = (
 
 @dataclass(frozen=True, slots=True)
 class FieldWays:
-    """What the rows differ in: each planner with each way of turning and of listening."""
+    """What the rows differ in: each planner with each way of turning and of listening. turns, listens: where neither is
+    named, crossfix does as in new missions."""
 
     planners: Sequence[str]
     turns: Sequence[str]
     listens: Sequence[str]
+
+    def rows(self) -> Iterator[tuple[str, str, str]]:
+        """Planner, turns and listens of each."""
+        for planner in self.planners:
+            if planner == "crossfix" and not self.turns and not self.listens:
+                yield planner, *AS_FLOWN
+            else:
+                yield from product((planner,), self.turns or ("whole",), self.listens or ("places",))
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +97,7 @@ def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, jso
             runs,
             seed,
         )
-        for planner in ways.planners
-        for turns in ways.turns
-        for listens in ways.listens
+        for planner, turns, listens in ways.rows()
     ]
     if json_:
         answers = [row.as_json() for row in rows]

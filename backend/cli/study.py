@@ -88,7 +88,10 @@ def run(
     ] = None,
     listens: Annotated[
         list[str] | None,
-        typer.Option(help="field-world: places; way, between them too; or way_swinging, the nose swinging."),
+        typer.Option(
+            help="field-world: places; way, between them too; or way_swinging, the nose swinging. Without it and "
+            "--turns crossfix does as in new missions, the others turn once around and listen there."
+        ),
     ] = None,
     turns: Annotated[
         list[str] | None,
@@ -116,7 +119,7 @@ def run(
     """
     if scenario is not None and FIELD_WORLD in scenario:
         try:
-            ways = FieldWays(planner or ["crossfix"], turns or ["whole"], listens or ["places"])
+            ways = FieldWays(planner or ["crossfix"], turns or (), listens or ())
             setting = FieldSetting(turn_rate, compass_sd, compass_bias, antenna, flights)
             _field_world(scenario, ways, setting, runs, seed, json_)
         except (PlannerError, StudyError) as error:

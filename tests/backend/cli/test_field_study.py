@@ -9,9 +9,11 @@ import pytest
 from field_flights import FLOWN
 from typer.testing import CliRunner
 
+from backend.api.suggestion import suggested_mission
 from backend.cli.field_gyration import circling, heard_circling
 from backend.cli.field_legs import LISTENED_HZ, NOSE_DEG_S2, flown, listened
-from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldOptions, FieldStudy
+from backend.cli.field_missions import AS_FLOWN, HOME, LOOK_S, SETTLE_S, FieldOptions, FieldStudy, mission_of
+from backend.cli.field_study import FieldWays
 from backend.cli.field_summary import summary
 from backend.cli.main import app
 from backend.search.sector import planned_turn, whole_turn
@@ -33,6 +35,21 @@ def test_a_mission_is_its_seed():
     assert first == again
     assert first.time_s != other.time_s
     assert first.turned_deg == 360.0 * (first.bearings + first.rejected)
+
+
+def test_crossfix_does_as_in_new_missions_unless_asked_otherwise():
+    assert list(FieldWays(["crossfix", "fisher"], (), ()).rows()) == [
+        ("crossfix", "sector", "way_swinging"),
+        ("fisher", "whole", "places"),
+    ]
+    assert list(FieldWays(["crossfix"], (), ["way"]).rows()) == [("crossfix", "whole", "way")]
+    assert list(FieldWays(["crossfix"], ["sector", "whole"], ()).rows()) == [
+        ("crossfix", "sector", "places"),
+        ("crossfix", "whole", "places"),
+    ]
+    suggested, flown_so = suggested_mission(HOME).sensor, mission_of(FieldOptions("crossfix", *AS_FLOWN)).sensor
+    for name in ("sector_turns", "listen_on_the_way", "swing_on_the_way", "never_stop"):
+        assert getattr(flown_so, name) == getattr(suggested, name)
 
 
 def test_a_sector_is_turned_as_far_as_the_machine_says_and_takes_that_long():
