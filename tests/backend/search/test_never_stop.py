@@ -46,6 +46,16 @@ def test_a_mission_that_has_all_it_needs_may() -> None:
     check_never_stop(asking(never_stop=False, bearing_errors="independent", swing_on_the_way=False))
 
 
+def test_where_it_turns_after_all_it_hears_all_directions_whatever_it_says_of_sectors() -> None:
+    both = asking(sector_turns=True)
+    check_never_stop(both)
+    assert not both.sensor.turns_in_sectors
+    assert localization(both, HOME).problem.sector_turns is None
+    stopping = asking(sector_turns=True, never_stop=False)
+    assert stopping.sensor.turns_in_sectors
+    assert localization(stopping, HOME).problem.sector_turns is not None
+
+
 @pytest.mark.parametrize(
     ("mission", "what"),
     [
