@@ -45,8 +45,7 @@ def what_if(
 
     recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken again, None: they stay as flown.
     """
-    happened = [one for one in recorded if wanted.until is None or one.seq <= wanted.until]
-    found = suppose(happened, wanted, wanted.bearings, antenna)
+    found = suppose(_believed_by(recorded, wanted), wanted, wanted.bearings, antenna)
     if found is None:
         return None
     task, bearings, supposed = found.task, found.counted, found.sweeps
@@ -111,6 +110,16 @@ def suppose(
         task = replace(bare.after(silent, legs[number]), beside=told if antenna is None else None)
         said.append(task.belief_fact(_bearings(supposed)))
     return Supposed(task, home, counted, flown, supposed, said, len(flown_legs) if antenna else 0)
+
+
+def _believed_by(recorded: Sequence[Recorded], wanted: WhatIfRequest) -> Sequence[Recorded]:
+    """What the belief shown at that event was told: a leg after it was heard, and did not count yet."""
+    if wanted.until is None:
+        return recorded
+    happened = [one for one in recorded if one.seq <= wanted.until]
+    beliefs = [one for one in happened if isinstance(one.event, BeliefUpdated)]
+    believed = max((one.seq for one in beliefs if wanted.emitter_id in (None, one.event.emitter_id)), default=0)
+    return [one for one in happened if one.seq <= believed or not isinstance(one.event, HeardOnTheWay)]
 
 
 def changed(mission: MissionSpec, wanted: Supposition) -> MissionSpec:

@@ -9336,8 +9336,8 @@ export interface components {
         /**
          * @description The decision after this many of the flown bearings that count, taken again.
          *
-         *     until: number of the last event that had happened by then, since legs are heard between bearings; None: all until
-         *     the next bearing.
+         *     until: number of the last event that had happened by then, since legs are heard between bearings; those that the
+         *     last belief by then was told count. None: all until the next bearing.
          */
         WhatIfRequest: {
             emitter_id?: string | null;

@@ -41,7 +41,14 @@ async def asked(client, bearings: int, until: int | None) -> dict:
 async def test_a_leg_counts_from_the_moment_on_at_which_it_was_heard(client, flown):
     bare, heard = TASK.belief_fact([FIRST])[0], TASK.after((), [way()]).belief_fact([FIRST])[0]
     assert bare.digest != heard.digest
-    for until, believed in ((flown["first"], bare), (flown["leg"], heard), (flown["second"], heard), (None, heard)):
+    moments = (
+        (flown["first"], bare),
+        (flown["leg"] - 1, bare),  # heard, and not believed yet
+        (flown["leg"], heard),
+        (flown["second"], heard),
+        (None, heard),
+    )
+    for until, believed in moments:
         told = await asked(client, 1, until)
         assert told["belief"]["digest"] == believed.digest
         last = told["steps"][-1]
