@@ -117,9 +117,13 @@ def _believed_by(recorded: Sequence[Recorded], wanted: WhatIfRequest) -> Sequenc
     if wanted.until is None:
         return recorded
     happened = [one for one in recorded if one.seq <= wanted.until]
-    beliefs = [one for one in happened if isinstance(one.event, BeliefUpdated)]
-    believed = max((one.seq for one in beliefs if wanted.emitter_id in (None, one.event.emitter_id)), default=0)
+    believed = max((one.seq for one in happened if _is_belief_about(one, wanted.emitter_id)), default=0)
     return [one for one in happened if one.seq <= believed or not isinstance(one.event, HeardOnTheWay)]
+
+
+def _is_belief_about(one: Recorded, emitter_id: str | None) -> bool:
+    """None: about any emitter."""
+    return isinstance(one.event, BeliefUpdated) and emitter_id in (None, one.event.emitter_id)
 
 
 def changed(mission: MissionSpec, wanted: Supposition) -> MissionSpec:
