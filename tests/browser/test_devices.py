@@ -14,7 +14,7 @@ from served import Server
 from backend.events import BeliefUpdated, Recorded, SafetyVetoed
 from backend.reasons import carried
 from backend.reasons.safety import PilotControls
-from tests.browser.by_thumb import HELD_IN_HAND, card, slide, tapped_until, touched
+from tests.browser.by_thumb import HELD_IN_HAND, card, slide, touched
 from tests.browser.sweep import SIZES, TOO_WIDE
 from tests.browser.test_after_flight import FLOWN, bring_in, checked, row
 
@@ -163,10 +163,7 @@ def test_a_flight_is_held_sent_elsewhere_and_resumed_with_a_thumb(
 
     screen.map_ready()
     part("map").scroll_into_view_if_needed()
-    tapped_until(
-        lambda: page.touchscreen.tap(*screen.map_point(0.5, 0.55)),
-        lambda: expect(part("proposal")).to_be_visible(timeout=5000),
-    )
+    page.touchscreen.tap(*screen.map_point(0.5, 0.55))
     expect(part("proposal")).to_have_attribute("data-allowed", "true", timeout=ANSWERED_MS)
     expect(part("proposal-compared")).to_contain_text(
         re.compile("(longer than|quicker than|as quick as) the planner's place")
