@@ -61,6 +61,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         _put_long_files_first(here, items)
 
 
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """What failed before it was tried again: what passed then is told by its name alone, and what failed again by its
+    second failure, which may follow from the first."""
+    for report in terminalreporter.getreports("rerun"):
+        terminalreporter.section(f"first failure of {report.nodeid}", "-")
+        terminalreporter.write_line(report.longreprtext)
+
+
 def _put_long_files_first(here: Path, items: list[pytest.Item]) -> None:
     """For `--dist loadfile --no-loadscope-reorder`, whose workers take the files in this order: after the longest ones
     those with the most tests, as xdist would have them."""
