@@ -59,9 +59,11 @@ async def strict() -> AsyncIterator[Workers]:
 async def test_a_file_that_takes_too_much_is_stopped_and_the_next_is_read(
     strict: Workers, work, argument, limit
 ) -> None:
+    """Only what takes too long meets a short limit: on a busy machine any of the others would, too."""
+    strict.time_s = 1.0 if limit == "time" else 60.0
     with pytest.raises(WorkStopped) as stopped:
         await strict.run(work, *([] if argument is None else [argument]))
-    assert stopped.value.reason == FileTooHeavy(limit, 1.0, 200 * 2**20)
+    assert stopped.value.reason == FileTooHeavy(limit, strict.time_s, 200 * 2**20)
     assert await strict.run(_fill, 1000) == 1000
 
 
