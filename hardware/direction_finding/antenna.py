@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,8 @@ class AntennaPattern:
     """
 
     name: str
-    relative_bearing_deg: NDArray[np.float64]
-    gain_db: NDArray[np.float64]
+    relative_bearing_deg: NDArray[np.float64] = field(repr=False)
+    gain_db: NDArray[np.float64] = field(repr=False)
     offset_to_nose_deg: float = 0.0
     frequency_hz: float | None = None
     polarization: str | None = None
