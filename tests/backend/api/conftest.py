@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from pathlib import Path
 
 import httpx
@@ -12,9 +13,11 @@ import pytest
 import uvicorn
 from equipment import FlatVehicle, HummingReceiver
 from fastapi import FastAPI
+from starlette.routing import BaseRoute
 from stepped_clock import SteppedClock
 
 from backend.api.application import make_application
+from backend.api.gate import lay_routes
 from backend.api.services import Services
 from backend.auth.access import Access
 from backend.auth.audit import AuditLog
@@ -94,15 +97,31 @@ async def services(settings: Settings, vehicle: PaperVehicle, workers: Workers) 
         yield services
 
 
-@pytest.fixture
-def app(services: Services, settings: Settings) -> FastAPI:
-    @asynccontextmanager
-    async def nothing(_: FastAPI) -> AsyncIterator[None]:
-        yield
+@asynccontextmanager
+async def nothing(_: FastAPI) -> AsyncIterator[None]:
+    """The services are there already."""
+    yield
 
+
+@cache
+def laid_routes() -> list[BaseRoute]:
+    """The application's, which do not depend on its settings. FastAPI lays them out with the models of their requests
+    when it first looks at them, which takes a tenth of a second: once for all tests."""
+    app = make_application(Settings(), nothing)
+    lay_routes(app)
+    return app.router.routes
+
+
+def application(services: Services, settings: Settings) -> FastAPI:
     app = make_application(settings, nothing)
+    app.router.routes[:] = laid_routes()
     app.state.services = services
     return app
+
+
+@pytest.fixture
+def app(services: Services, settings: Settings) -> FastAPI:
+    return application(services, settings)
 
 
 @pytest.fixture
@@ -116,15 +135,8 @@ async def client(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
 async def elsewhere(tmp_path: Path, workers: Workers) -> AsyncIterator[tuple[httpx.AsyncClient, Services]]:
     """Another installation: its own database, its own vehicle."""
     settings = Settings(data_dir=tmp_path / "elsewhere", page_dir=tmp_path)
-
-    @asynccontextmanager
-    async def nothing(_: FastAPI) -> AsyncIterator[None]:
-        yield
-
     async with running_services(settings, PaperVehicle(), workers) as services:
-        app = make_application(settings, nothing)
-        app.state.services = services
-        transport = httpx.ASGITransport(app, raise_app_exceptions=False)
+        transport = httpx.ASGITransport(application(services, settings), raise_app_exceptions=False)
         async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
             yield client, services
 
