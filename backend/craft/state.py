@@ -105,11 +105,6 @@ class CraftState:
         return pilot_has(self.authority)
 
     @property
-    def flies_by_itself(self) -> bool:
-        """Automatic control moves the vehicle, or is about to."""
-        return self.phase in AUTOMATIC or self.phase in HOMEWARD
-
-    @property
     def comes_down_as_ordered(self) -> bool:
         """Also when a server was away meanwhile, unless it has been ordered to hold since."""
         return self.phase in HOMEWARD or (self.phase == "hold" and self.phase_reason == ORDERED_BEFORE)

@@ -19,8 +19,8 @@ from backend.reasons import Reason
 class EmitterState:
     """What is known of one emitter.
 
-    claim, claimed_at_s: the last belief that said localized, and when (UTC epoch seconds): of an emitter that moves it
-    stands for its moment, whatever is believed later.
+    claim: the last belief that said localized; of an emitter that moves it stands for its moment, whatever is believed
+    later.
 
     muted: sources whose bearings do not count, as those in `excluded` do not.
 
@@ -40,7 +40,6 @@ class EmitterState:
     folded_again: bool = False
     localized_at_s: float | None = None
     claim: BeliefUpdated | None = None
-    claimed_at_s: float | None = None
     truth: TruthNoted | None = None
     silences: tuple[SweepRejected, ...] = ()
     ways: tuple[HeardOnTheWay, ...] = ()

@@ -216,7 +216,7 @@ def _evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(_with_spec(state, spec), passed=False, antenna=None)
         case AreaChanged(search=search):
             changed = _with_spec(state, state.mission.searching(search))
-            return _each(changed, lambda emitter: replace(emitter, localized_at_s=None, claim=None, claimed_at_s=None))
+            return _each(changed, lambda emitter: replace(emitter, localized_at_s=None, claim=None))
         case PrioritiesChanged(priorities=priorities):
             return replace(state, spec=state.mission.in_order(priorities))
         case PreflightChecked(passed=passed):
@@ -287,7 +287,7 @@ def _evolve_emitter(
             since = (emitter.localized_at_s or at_s) if localized else None
             emitter = replace(emitter, belief=event, belief_current=True, folded_again=False, localized_at_s=since)
             if localized:
-                emitter = replace(emitter, claim=event, claimed_at_s=at_s)
+                emitter = replace(emitter, claim=event)
     evolved = replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
     match event:
         case BeliefUpdated():
@@ -323,7 +323,7 @@ def _tells(emitter: EmitterState, source: BearingSource) -> bool:
 
 def _recounted(emitter: EmitterState) -> EmitterState:
     """What was claimed was claimed of other bearings."""
-    return replace(_outrun(emitter), claim=None, claimed_at_s=None)
+    return replace(_outrun(emitter), claim=None)
 
 
 def _folded_again(emitter: EmitterState) -> EmitterState:

@@ -58,26 +58,17 @@ _STEP_DEG = 0.5
 
 
 class PatternCurve:
-    """Gain and its slope at any relative bearing from a table every 0.5 degrees (circular, linear in dB)."""
+    """Gain at any relative bearing from a table every 0.5 degrees (circular, linear in dB)."""
 
     def __init__(self, pattern: AntennaPattern) -> None:
         table = pattern.gain_at(np.arange(0.0, 360.0, _STEP_DEG))
         self._table = np.append(table, table[:1])
-        rise = (np.roll(table, -1) - np.roll(table, 1)) / (2.0 * _STEP_DEG)
-        self._rise = np.append(rise, rise[:1])
         self.peak_db = float(table.max())
         self.beam_deg = float(np.sum(table > self.peak_db - 3.0) * _STEP_DEG)
 
     def gain_db(self, relative_deg: NDArray[np.float64]) -> NDArray[np.float64]:
         """relative_deg: any shape, source bearing - antenna heading, any turn of the circle."""
-        return self._look_up(self._table, relative_deg)
-
-    def slope_db_deg(self, relative_deg: NDArray[np.float64]) -> NDArray[np.float64]:
-        """dG/dx in dB per degree, same argument as `gain_db`."""
-        return self._look_up(self._rise, relative_deg)
-
-    @staticmethod
-    def _look_up(table: NDArray[np.float64], relative_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+        table = self._table
         place = (relative_deg % 360.0) / _STEP_DEG
         low = np.minimum(place.astype(np.int64), table.size - 2)
         part = place - low

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
@@ -20,9 +19,6 @@ from planner.types import (
     RingPrior,
     UniformPrior,
 )
-
-ScenarioName = Literal["1", "2", "3", "field"]
-ConfigName = Literal["fast", "medium", "slow"]
 
 MEASUREMENT_TIMES: dict[str, float] = {"fast": 2.0, "medium": 10.0, "slow": 40.0}
 """t_m, s (Table 4.1)."""

@@ -33,9 +33,7 @@ def shape(zone: FencePolygon) -> Polygon:
         box(-100.0, -100.0, 100.0, 100.0),
         box(-100.0, -100.0, 100.0, 100.0).buffer(60.0, quad_segs=64),
         Point(0.0, 0.0).buffer(300.0, quad_segs=128),
-        Polygon(
-            [(math.cos(a) * (100 + 20 * (i % 2)), math.sin(a) * 100) for i, a in enumerate(x / 20 for x in range(125))]
-        ),
+        JAGGED,
     ],
 )
 def test_the_net_hangs_outside_the_fence_with_few_corners(fence: Polygon) -> None:

@@ -18,7 +18,6 @@ from tests.benchmarks.figures.wanted import BY_KEY, WANTED, Wanted
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 
 TABLE = Table(name="rows", columns=(Column(name="what"), Column(name="s", decimals=2)), rows=(("a", (1.0, 0.25)),))
-UNIT_MS = {"name": "a", "value": 1, "unit": "ms", "met": True}
 
 
 def written(folder: Path, **changes: Any) -> Path:
