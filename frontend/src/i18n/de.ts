@@ -177,7 +177,7 @@ export const de: Record<MessageKey, string> = {
   "state.measuringAgain": "Peilt an Ort {number} noch einmal (Versuch {attempt})",
   "state.hold": "Hält. {reason}",
   "state.hold.back": "Hält. {link}: wieder verbunden",
-  "state.manual": "Der Pilot fliegt",
+  "state.manual": "Der Pilot hat übernommen",
   "state.returning": "Kehrt heim",
   "state.landing": "Landet",
   "state.done": "Fertig. {reason}",

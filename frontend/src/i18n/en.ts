@@ -132,7 +132,7 @@ export const en = {
   "state.measuringAgain": "Taking the bearing at place {number} again (attempt {attempt})",
   "state.hold": "Holding. {reason}",
   "state.hold.back": "Holding. {link}: connected again",
-  "state.manual": "The pilot flies",
+  "state.manual": "The pilot took over",
   "state.returning": "Returning home",
   "state.landing": "Landing",
   "state.done": "Done. {reason}",
