@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -244,5 +245,27 @@ def settings_of(**given: Any) -> Settings:
         return Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
         first = error.errors()[0]
-        name = ".".join(str(part) for part in first["loc"])
-        raise ValueError(f"{name}: {first['msg']}") from None
+        problem = first["msg"].removeprefix("Value error, ")
+        name = str(first["loc"][0]) if first["loc"] else ""
+        asked = _said_as(name, given) if name else ""
+        raise ValueError(f"{asked}: {problem}" if asked else problem) from None
+
+
+OPTIONS = {
+    "antenna_pattern": "pattern",
+    "database_url": "database",
+    "emitters": "emitter",
+    "keep_sweeps_days": "keep-days",
+    "simulate": "flavour",
+    "simulated_band_hz": "band",
+    "time_factor": "speedup",
+    "vehicle_url": "vehicle",
+}
+"""Settings whose option of the command line has another name."""
+
+
+def _said_as(name: str, given: Mapping[str, Any]) -> str:
+    """Where a setting came from: the option, or the variable of the environment."""
+    if given.get(name) is None:
+        return f"CROSSFIX_{name.upper()}"
+    return "--" + OPTIONS.get(name, name).replace("_", "-")

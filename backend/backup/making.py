@@ -21,7 +21,7 @@ from backend.backup.archive import BLOCK_BYTES, ArchiveWriter
 from backend.backup.manifest import DATABASE, FILES, FORMAT, PATTERN, SPOOL, BackupError, Manifest, of_the_machine
 from backend.backup.rows import lines_of, reflected, revision_of
 from backend.settings import Settings
-from backend.store.engine import dispose, engine_for_once
+from backend.store.engine import database_missing, dispose, engine_for_once
 from backend.store.reading import why
 from backend.store.spool import SpoolForeign, entries_beside
 from backend.version import VERSION
@@ -73,12 +73,9 @@ def make_backup(
 
 
 def _must_be_there(settings: Settings) -> None:
-    url = make_url(settings.async_database_url)
-    if url.get_backend_name() == "sqlite" and not Path(url.database or "").is_file():
-        raise BackupError(
-            f"there is no database {url.database}: name the server's data directory (--data-dir) or database "
-            "(--database)"
-        )
+    missing = database_missing(settings.async_database_url)
+    if missing is not None:
+        raise BackupError(missing)
 
 
 async def _write(

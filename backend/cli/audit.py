@@ -48,7 +48,9 @@ def verify(
         head = None if noted is None else _head(noted)
         with path.open("rb") as lines:
             verdict = verify_chain(lines, head)
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        stop(f"{error.filename} cannot be read ({error.strerror}): name the server's data directory (--data-dir)")
+    except ValueError as error:
         stop(error)
     if json_:
         print_json({"number": verdict.head.number, "digest": verdict.head.digest, "fault": verdict.fault,

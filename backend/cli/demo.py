@@ -36,15 +36,19 @@ SPACING_HZ = 100_000.0
 """Between the frequencies of several emitters."""
 PERIODS_S = (1.3, 1.05, 1.6, 0.85)
 """Of tags at one frequency."""
+PACE_M_S = 0.2
+"""Of emitters that move."""
 
 
-def movement(kind: str | None, pace: float) -> MovementSpec:
-    """kind None: still. Raises ValueError for one that is not known."""
+def movement(kind: str | None, pace: float | None) -> MovementSpec:
+    """kind None: still. Raises ValueError for one that is not known, and for a pace of what stands still."""
     if kind is None:
+        if pace is not None:
+            raise ValueError("--pace is for emitters that move: add --moves")
         return MovementSpec()
     for known in GAITS:
         if kind == known:
-            return MovementSpec(kind=known, speed_m_s=pace)
+            return MovementSpec(kind=known, speed_m_s=PACE_M_S if pace is None else pace)
     raise ValueError(f"--moves {kind!r} is not known: choose one of {', '.join(GAITS)}")
 
 
@@ -129,7 +133,9 @@ def demo(
     moves: Annotated[
         str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")
     ] = None,
-    pace: Annotated[float, typer.Option(min=0.01, max=5.0, help="With --moves: how fast, m/s.")] = 0.2,
+    pace: Annotated[
+        float | None, typer.Option(min=0.01, max=5.0, help=f"With --moves: how fast, m/s. Default: {PACE_M_S}.")
+    ] = None,
     mend_failsafes: Annotated[
         bool,
         typer.Option(help="Set failsafe parameters of the autopilot that would not act, and say which."),

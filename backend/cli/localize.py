@@ -196,8 +196,8 @@ def _read_area(path: Path, frame: LocalFrame) -> Region:
             np.array([frame.to_enu(Place(float(p[1]), float(p[0]))) for p in ring[:-1]], dtype=np.float64)
             for ring in rings
         )
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise ValueError(f"{path} holds no usable GeoJSON polygon ({error})") from error
+    except (KeyError, TypeError, ValueError, IndexError):
+        raise ValueError(f"{path} holds no usable GeoJSON; draw the area as Polygon or MultiPolygon") from None
     if not region:
         raise ValueError(f"{path} holds no GeoJSON polygon; draw the area as Polygon or MultiPolygon")
     return region

@@ -53,11 +53,13 @@ async def _made(settings: Settings, name: str, admin: bool) -> tuple[str, str]:
     from backend.auth.people import People
     from backend.auth.records import Records
     from backend.auth.recovery import make_recovery
-    from backend.store.engine import make_engine
+    from backend.store.engine import database_missing, make_engine
 
-    if settings.database_url is None and not settings.data_dir.is_dir():
-        raise ValueError(f"there is no data directory {settings.data_dir}: name the server's (--data-dir)")
-    keeping = Keeping(Records(make_engine(settings.async_database_url, settings.database_timeout_s), 30.0))
+    url = settings.async_database_url
+    missing = database_missing(url)
+    if missing is not None:
+        raise ValueError(missing)
+    keeping = Keeping(Records(make_engine(url, settings.database_timeout_s), 30.0))
     audit = AuditLog(settings.data_dir / AUDIT_FILE, time.time)
     try:
         people = People(keeping)

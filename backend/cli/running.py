@@ -157,7 +157,8 @@ def _bind(host: str, port: int) -> socket.socket:
     except OSError as error:
         bound.close()
         raise CannotServe(
-            f"cannot listen on {host} port {port}: {error.strerror}; choose another with --port"
+            f"cannot listen on {host} port {port}: {error.strerror}; choose another with "
+            f"{'--host' if isinstance(error, socket.gaierror) else '--port'}"
         ) from error
     bound.set_inheritable(False)
     return bound

@@ -27,6 +27,7 @@ app = typer.Typer(
 )
 
 FIELD_WORLD = "field-world"
+FIELD_OPTIONS = ("listens", "turns", "turn_rate", "compass_sd", "compass_bias", "antenna", "flights")
 DEFAULT_DIRECTORY = Path("study-results")
 
 Directory = Annotated[
@@ -36,6 +37,7 @@ Directory = Annotated[
 
 @app.command()
 def run(
+    context: typer.Context,
     scenario: Annotated[
         list[str] | None,
         typer.Option(
@@ -89,8 +91,9 @@ def run(
     listens: Annotated[
         list[str] | None,
         typer.Option(
-            help="field-world: places; way, between them too; or way_swinging, the nose swinging. Without it and "
-            "--turns crossfix does as in new missions, the others turn once around and listen there."
+            help="field-world: places; way, between them too; way_swinging, the nose swinging; or never_stopping, "
+            "turning only where the way told little. Without it and --turns crossfix does as in new missions, the "
+            "others turn once around and listen there."
         ),
     ] = None,
     turns: Annotated[
@@ -125,6 +128,10 @@ def run(
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)
         return
+    given = [name for name in FIELD_OPTIONS if _is_given(context, name)]
+    if given:
+        option = given[0].replace("_", "-")
+        _refuse(f"--{option} is of the field world: add --scenario {FIELD_WORLD}, or leave it out", json_)
     study = _modules()
     try:
         cells = [
@@ -190,6 +197,11 @@ def report(
 
 
 app.command()(truth)
+
+
+def _is_given(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def _field_world(

@@ -34,7 +34,9 @@ def sweep(
     offset: Annotated[
         float | None,
         typer.Option(
-            help="Degrees the antenna's front points clockwise of the nose. Default: the file's, else the pattern's."
+            min=-360.0,
+            max=360.0,
+            help="Degrees the antenna's front points clockwise of the nose. Default: the file's, else the pattern's.",
         ),
     ] = None,
     tag: Annotated[str | None, typer.Option(help="Use this tag's pulses. Default: the tag heard most.")] = None,

@@ -55,16 +55,15 @@ def thin(
 
 
 async def _thin(settings: Settings, keep_days: float, dry_run: bool) -> tuple[int, int, int]:
-    from sqlalchemy import make_url
-
     from backend.store import retention
-    from backend.store.engine import dispose, engine_for_once, shrink
+    from backend.store.engine import database_missing, dispose, engine_for_once, shrink
     from backend.store.iq_folder import IqFolder
     from backend.store.opening import DatabaseUnusable, claimed
 
     url = settings.async_database_url
-    if make_url(url).get_backend_name() == "sqlite" and not Path(make_url(url).database or "").is_file():  # noqa: ASYNC240
-        raise ValueError(f"there is no database {make_url(url).database}")
+    missing = database_missing(url)
+    if missing is not None:
+        raise ValueError(missing)
     engine = engine_for_once(url, 10.0)
     try:
         work = retention.old_sweeps if dry_run else retention.thin

@@ -134,6 +134,15 @@ def _lower(text: Any) -> str | None:
     return None if text is None else str(text).lower()
 
 
+def database_missing(url: str) -> str | None:
+    """A sentence when an SQLite file is not there, which opening it would make; None: it is, or is no file."""
+    found = make_url(url)
+    if found.get_backend_name() != "sqlite" or Path(found.database or "").is_file():
+        return None
+    here = "name the server's data directory (--data-dir) or database (--database)"
+    return f"there is no database {found.database}: {here}"
+
+
 def engine_for_once(url: str, timeout_s: float) -> AsyncEngine:
     """For a command that works beside the server: its connections are closed as soon as they are given back."""
     engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})

@@ -86,7 +86,7 @@ def load_configuration(path: Path | None, overrides: dict[str, object]) -> Paylo
         if first["type"] == "missing":
             option = {"servers": "server"}.get(entry, entry).replace("_", "-")
             raise ConfigurationError(ConfigurationEntryMissing(entry, option)) from error
-        raise ConfigurationError(ConfigurationEntryWrong(entry, first["msg"])) from error
+        raise ConfigurationError(ConfigurationEntryWrong(entry, first["msg"].removeprefix("Value error, "))) from error
     width_s, period_s = configuration.pulse_width_s, configuration.pulse_period_s
     if (width_s is None) != (period_s is None):
         raise ConfigurationError(PulseTimingIncomplete())

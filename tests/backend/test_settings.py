@@ -8,7 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 from backend.api.application import make_application
-from backend.settings import Settings
+from backend.settings import Settings, settings_of
 
 
 @pytest.mark.parametrize(
@@ -30,6 +30,16 @@ def test_a_server_beyond_loopback_is_known_as_such(host: str, reachable: bool) -
 
 def test_the_default_is_loopback() -> None:
     assert not Settings().reachable_from_outside
+
+
+def test_a_wrong_value_is_named_as_it_was_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(ValueError, match=r"^--speedup: Input should be greater than 0$"):
+        settings_of(time_factor=0.0)
+    with pytest.raises(ValueError, match=r"^--database: the database URL must begin"):
+        settings_of(database_url="foo")
+    monkeypatch.setenv("CROSSFIX_TIME_FACTOR", "0")
+    with pytest.raises(ValueError, match=r"^CROSSFIX_TIME_FACTOR: Input should be greater than 0$"):
+        settings_of(host="127.0.0.1")
 
 
 @pytest.mark.parametrize("url", ["mysql://localhost/x", "crossfix.sqlite", ""])

@@ -141,3 +141,10 @@ def test_the_command_in_the_wrong_folder_says_so(tmp_path: Path) -> None:
     assert found.exit_code != 0
     assert "--data-dir" in found.output
     assert not (tmp_path / "nowhere").exists()
+
+
+def test_the_command_makes_no_database_where_there_is_none(tmp_path: Path) -> None:
+    told = CliRunner().invoke(app, ["recover", "Ada", "--data-dir", str(tmp_path)])
+    assert told.exit_code == 2
+    assert "there is no database" in told.output
+    assert not list(tmp_path.iterdir())

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from backend.cli.demo import CARRIER, TAG, simulated, sought
+from backend.cli.demo import CARRIER, TAG, movement, simulated, sought
 from backend.cli.demo_grade import MissionLog, sentences, summary
 from backend.cli.progress import progress_line
 from backend.events import (
@@ -129,6 +129,13 @@ def test_every_emitter_sought_is_simulated_once(first: EmitterSpec) -> None:
     there = [emitter.frequency_hz for emitter in simulated(emitters)]
     assert len(set(there)) == len(there)
     assert {emitter.frequency_hz for emitter in emitters} <= set(there)
+
+
+def test_a_pace_of_what_stands_still_is_refused() -> None:
+    assert movement("animal", None).speed_m_s == 0.2
+    assert movement("animal", 0.5).speed_m_s == 0.5
+    with pytest.raises(ValueError, match="add --moves"):
+        movement(None, 0.5)
 
 
 def test_progress_tells_of_phases_and_estimates_and_little_else() -> None:

@@ -91,6 +91,12 @@ def test_bad_values_are_an_object_for_programs(tmp_path, monkeypatch, arguments)
     assert json.loads(result.stdout).keys() == {"error"}
 
 
+def test_an_option_of_the_field_world_is_not_passed_over_elsewhere(tmp_path):
+    result = call("run", "--turns", "sector", "--runs", "1", "--results", tmp_path)
+    assert result.exit_code == 2
+    assert "--turns is of the field world: add --scenario field-world" in result.stderr
+
+
 @pytest.mark.slow
 def test_a_dask_cluster_of_processes_flies_the_same_missions(tmp_path):
     from distributed import LocalCluster
