@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,10 +12,11 @@ import typer
 from backend.cli.edge import parse_place, print_json, remark, stop
 from backend.settings import settings_of
 from hardware.direction_finding.estimate import MINIMUM_QUALITY, SparseDirectionFinder
+from hardware.direction_finding.heading import HeadingError, made_true
 from hardware.direction_finding.pattern_file import PatternError, borrowed_pattern, load_pattern
 from hardware.direction_finding.recordings import RecordedSweep, mounted
 from hardware.direction_finding.table_file import RecordingError
-from hardware.readings import BearingReading
+from hardware.readings import BearingReading, Place
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
 from hardware.sdr.spectrum import SpectrumError
@@ -55,6 +58,13 @@ def sweep(
     pulse_period_s: Annotated[
         float | None, typer.Option(help="For SigMF of a pulsed tag: from pulse to pulse.")
     ] = None,
+    magnetic: Annotated[
+        datetime | None,
+        typer.Option(
+            formats=["%Y-%m-%d"],
+            help="The headings are a magnetic compass's, of this day: made true by the World Magnetic Model.",
+        ),
+    ] = None,
     heading_sigma_deg: Annotated[
         float | None,
         typer.Option(
@@ -80,14 +90,17 @@ def sweep(
         iq = IqReading(headings, frequency_hz, _pulses(pulse_width_s, pulse_period_s))
         recording = read_sweeps(file, tag, iq)
         place = parse_place(at) if at is not None else None
+        sweeps = (
+            recording.sweeps if magnetic is None else [_made_true(one, place, magnetic) for one in recording.sweeps]
+        )
         heading_sigma = settings_of(heading_sigma_deg=heading_sigma_deg).heading_sigma_deg
-    except (RecordingError, PatternError, SpectrumError, ValueError) as error:
+    except (RecordingError, PatternError, SpectrumError, HeadingError, ValueError) as error:
         stop(error)
     for reason in recording.remarks:
         remark(sentence_of(reason))
     finder = SparseDirectionFinder(minimum_quality=minimum_quality, heading_sigma_deg=heading_sigma)
     answers: list[dict[str, Any]] = []
-    for recorded in recording.sweeps:
+    for recorded in sweeps:
         reading = finder.estimate(recorded.sweep, mounted(antenna, recorded, offset))
         answers.append(_answer(recorded, reading, place))
     if json_:
@@ -95,6 +108,14 @@ def sweep(
     else:
         for answer in answers:
             typer.echo(_sentence(answer))
+
+
+def _made_true(recorded: RecordedSweep, place: tuple[float, float] | None, day: datetime) -> RecordedSweep:
+    """Raises HeadingError, and ValueError where nobody says where the sweep was taken."""
+    if place is None and not recorded.place_known:
+        raise ValueError("magnetic headings are made true where they were taken: give --at LAT,LON")
+    here = recorded.sweep.position if place is None else Place(*place)
+    return replace(recorded, sweep=made_true(recorded.sweep, here, day.replace(tzinfo=UTC).timestamp()))
 
 
 def _pulses(width_s: float | None, period_s: float | None) -> PulseSetting | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -12,7 +12,7 @@ from pygeomag import GeoMag
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.refine import PatternCurve
 from hardware.direction_finding.sweep import SweepError, assemble_sweep
-from hardware.readings import HeadingSample, Place, PowerSample
+from hardware.readings import HeadingSample, Place, PowerSample, Sweep
 from hardware.reasons.antenna import NoMagneticModel
 from hardware.reasons.sweep import PowerNotNumbers, SweepReason
 from planner.reason import ReasonedError
@@ -41,9 +41,9 @@ def declination_deg(place: Place, at_s: float, altitude_m: float = 0.0) -> float
     return float(field.d)
 
 
-def true_heading_deg(magnetic_deg: float, place: Place, at_s: float) -> float:
-    """True heading of a magnetic one."""
-    return (magnetic_deg + declination_deg(place, at_s)) % 360.0
+def made_true(sweep: Sweep, place: Place, at_s: float) -> Sweep:
+    """The sweep whose headings were a magnetic compass's, taken at place and UTC epoch seconds. Raises HeadingError."""
+    return replace(sweep, heading_deg=(sweep.heading_deg + declination_deg(place, at_s)) % 360.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import typer
 from typer.testing import CliRunner
 
 from backend.cli.sweep import sweep
+from hardware.direction_finding.heading import declination_deg
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.readings import Place
 from hardware.sdr.sigmf_file import Azimuth, write_sigmf
@@ -51,6 +53,25 @@ def test_several_rotations_print_one_array(tmp_path: Path) -> None:
 def test_offset_option_turns_the_answer_and_text_is_a_sentence(tmp_path: Path) -> None:
     result = CliRunner().invoke(APP, [str(recording(tmp_path, 120.0)), "--offset", "-20"])
     assert "bearing 100.0" in result.stdout
+
+
+def test_magnetic_headings_are_made_true_where_and_when_they_were_taken(tmp_path: Path) -> None:
+    file = recording(tmp_path, 120.0)
+    result = CliRunner().invoke(APP, [str(file), "--magnetic", "2026-05-01", "--json"])
+    east = declination_deg(Place(50.1, 7.2), datetime(2026, 5, 1, tzinfo=UTC).timestamp())
+    assert 2.0 < east < 5.0
+    assert json.loads(result.stdout)["bearing_deg"] == pytest.approx(120.0 + east, abs=0.3)
+
+    nowhere = tmp_path / "nowhere.csv"
+    nowhere.write_text("\n".join(f"{heading},-60" for heading in range(0, 360, 5)))
+    for arguments, said in (
+        ([str(nowhere), "--magnetic", "2026-05-01"], "--at"),
+        ([str(file), "--magnetic", "1999-05-01"], "1999"),
+    ):
+        refused = CliRunner().invoke(APP, arguments)
+        assert refused.exit_code == 2
+        assert said in refused.stderr
+        assert len(refused.stderr.splitlines()) == 1
 
 
 def test_plain_csv_takes_its_place_from_the_option(tmp_path: Path) -> None:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from refusals import refusing
 
-from hardware.direction_finding.heading import HeadingError, declination_deg, estimate_clock_offset, true_heading_deg
+from hardware.direction_finding.heading import HeadingError, declination_deg, estimate_clock_offset, made_true
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
-from hardware.readings import HeadingSample, Place, PowerSample
+from hardware.readings import HeadingSample, Place, PowerSample, Sweep
 from hardware.reasons.antenna import NoMagneticModel
 
 PATTERN = load_pattern(SMALL_YAGI)
@@ -30,9 +30,11 @@ def test_declination_is_the_models(lat: float, lon: float, year: int, declinatio
     assert declination_deg(Place(lat, lon), at(year)) == pytest.approx(declination, abs=0.03)
 
 
-def test_true_heading_wraps_and_dates_without_a_model_are_refused() -> None:
+def test_true_headings_wrap_and_dates_without_a_model_are_refused() -> None:
     place = Place(-80.0, -120.0)
-    assert true_heading_deg(350.0, place, at(2025)) == pytest.approx((350.0 + declination_deg(place, at(2025))) % 360.0)
+    magnetic = Sweep(np.zeros(2), np.array([10.0, 350.0]), np.zeros(2), 868e6, place, 0.0)
+    east = declination_deg(place, at(2025))
+    assert made_true(magnetic, place, at(2025)).heading_deg == pytest.approx([10.0 + east, (350.0 + east) % 360.0])
     with refusing(NoMagneticModel(1999), HeadingError):
         declination_deg(place, at(1999))
 
