@@ -40,10 +40,6 @@ class IqSource(Protocol):
         """Tune; returns the centre frequency really tuned to. Raises ReceiverError."""
         ...
 
-    async def set_gain(self, gain_db: float) -> None:
-        """Raises ReceiverError."""
-        ...
-
     def blocks(self) -> AsyncIterator[IqBlock]:
         """Raises ReceiverError when the device is gone; ends at the end of a recording or when closed."""
         ...

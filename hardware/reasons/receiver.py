@@ -98,19 +98,6 @@ class NonsensicalPower:
 
 
 @dataclass(frozen=True, slots=True)
-class GainFixed:
-    """why: it belongs to a recording, or a sweep is running whose powers would no longer compare."""
-
-    why: Literal["recording", "sweep"]
-    code: Literal["gain_fixed"] = "gain_fixed"
-
-    english: ClassVar[Words] = Words(
-        "The gain {why?recording=of a recording cannot be changed|sweep=must not change inside a sweep}.",
-        "{why?recording=Record again with another gain|sweep=Set it before the sweep or after it}.",
-    )
-
-
-@dataclass(frozen=True, slots=True)
 class RecordedSweepEmpty:
     code: Literal["recorded_sweep_empty"] = "recorded_sweep_empty"
 
@@ -126,6 +113,5 @@ ReceiverReason = (
     | ReceiverUnplugged
     | SamplesLost
     | NonsensicalPower
-    | GainFixed
     | RecordedSweepEmpty
 )

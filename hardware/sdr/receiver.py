@@ -10,7 +10,7 @@ from hardware.iq import IqSource
 from hardware.ports import ReceiverError
 from hardware.readings import Channel, PowerSample
 from hardware.reasons.channels import BandTooNarrow, OutsideBand
-from hardware.reasons.receiver import GainFixed, ReceiverNotOpen, ReceiverSilent, SamplesLost
+from hardware.reasons.receiver import ReceiverNotOpen, ReceiverSilent, SamplesLost
 from hardware.sdr.every_pulse import EveryPulseMeter, every_pulse_setting
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.spectrum import SpectrumError, ToneMeter, ToneSetting, outside_band
@@ -28,7 +28,6 @@ class IqReceiver:
         self._source = source
         self._silent_after_s = silent_after_s
         self._meters: list[ToneMeter | PulseMeter] = []
-        self._gain_frozen = False
         self.lost_samples = 0
         """IQ samples the source reported as lost since open."""
 
@@ -79,22 +78,6 @@ class IqReceiver:
         """Closes the source too."""
         self._meters = []
         await self._source.close()
-
-    def freeze_gain(self) -> None:
-        """From here on (a sweep begins) the gain stays as it is."""
-        self._gain_frozen = True
-
-    def thaw_gain(self) -> None:
-        """The sweep is over."""
-        self._gain_frozen = False
-
-    async def set_gain(self, gain_db: float) -> None:
-        """Change the gain between sweeps. Raises ReceiverError inside a sweep: powers would not compare."""
-        if self._gain_frozen:
-            raise ReceiverError(GainFixed("sweep"))
-        await self._source.set_gain(gain_db)
-        for meter in self._meters:
-            meter.gain_db = self._source.gain_db
 
     async def samples(self) -> AsyncIterator[PowerSample]:
         """See the Receiver port."""

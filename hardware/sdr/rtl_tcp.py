@@ -94,12 +94,6 @@ class RtlTcpSource:
         if magic != b"RTL0":
             raise ReceiverError(NotRtlTcp(self._address))
 
-    async def set_gain(self, gain_db: float) -> None:
-        """Before `open`: what the gain will be. Raises ReceiverError when the connection is gone."""
-        if self._writer is not None:
-            await self._command(SET_GAIN, round(gain_db * 10.0) & 0xFFFFFFFF)
-        self._gain = gain_db
-
     async def _command(self, code: int, value: int) -> None:
         if self._writer is None:
             raise ReceiverError(ReceiverNotOpen())

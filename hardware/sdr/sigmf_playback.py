@@ -10,7 +10,6 @@ from hardware.direction_finding.table_file import RecordingError
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.ports import Clock, ReceiverError
 from hardware.reasons.channels import RecordedElsewhere
-from hardware.reasons.receiver import GainFixed
 from hardware.sdr.sigmf_file import load_sigmf
 
 
@@ -52,10 +51,6 @@ class SigmfSource:
             raise ReceiverError(RecordedElsewhere(self._centre, centre_hz))
         self._closed = False
         return self._centre
-
-    async def set_gain(self, gain_db: float) -> None:
-        """Raises ReceiverError: what is recorded has its gain."""
-        raise ReceiverError(GainFixed("recording"))
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
         """Ends with the recording, or within a block after `close`."""

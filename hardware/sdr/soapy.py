@@ -173,12 +173,6 @@ class SoapySource:
         self._radio = radio
         return radio.centre_hz
 
-    async def set_gain(self, gain_db: float) -> None:
-        """Of a radio with coarse steps, or none, the gain then told is the one that it took."""
-        if self._radio is not None:
-            await self._radio.call(self._radio.set_gain, gain_db)
-        self._wanted_gain = gain_db
-
     async def blocks(self) -> AsyncIterator[IqBlock]:
         """Samples that the driver lost are counted in `lost` of the next block."""
         radio = self._radio

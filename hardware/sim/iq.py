@@ -25,7 +25,7 @@ TELEMETRY_HELD_S = 0.5
 class SimulatedIq:
     """An IqSource: every emitter of the world inside the band, noise, and a converter that clips at full scale.
 
-    Full scale is the front end's clip_dbm at gain 0, so that `power_db` of a meter is in dBm.
+    Full scale is the front end's clip_dbm without `extra_gain_db`; `power_db` of a meter is in dBm with any.
     drift_hz_s: how fast the emitters' oscillators drift. block_s: length of a block.
     """
 
@@ -38,6 +38,7 @@ class SimulatedIq:
         drift_hz_s: float = 0.0,
         block_s: float = 0.05,
         ground_amsl_m: float = 0.0,
+        extra_gain_db: float = 0.0,
     ) -> None:
         self._world = world
         self._telemetry = pose
@@ -46,7 +47,7 @@ class SimulatedIq:
         self._drift_hz_s = drift_hz_s
         self._block_s = block_s
         self._ground_amsl_m = ground_amsl_m
-        self._extra_gain_db = 0.0
+        self._extra_gain_db = extra_gain_db
         self._centre_hz: float | None = None
         self._rng = np.random.default_rng([world.seed, 7])
 
@@ -64,10 +65,6 @@ class SimulatedIq:
         """Any frequency can be tuned to, and exactly."""
         self._centre_hz = centre_hz
         return centre_hz
-
-    async def set_gain(self, gain_db: float) -> None:
-        """`gain_db` as `gain_db` tells it: clip_dbm moves the other way."""
-        self._extra_gain_db = gain_db + self._world.front_end.clip_dbm
 
     async def close(self) -> None:
         """`blocks` ends after the block at hand."""

@@ -203,10 +203,6 @@ export const reasonsEn: ReasonTable = {
     text: "The receiver delivers a power of {value} dB, which is impossible; such samples are left out.",
     remedy: "Check the receiver and its driver.",
   },
-  gain_fixed: {
-    text: "The gain {why?recording=of a recording cannot be changed|sweep=must not change inside a sweep}.",
-    remedy: "{why?recording=Record again with another gain|sweep=Set it before the sweep or after it}.",
-  },
   recorded_sweep_empty: {
     text: "The recorded sweep holds no sample.",
     remedy: "Give another recording.",

@@ -27,8 +27,6 @@ class LosingSource:
     async def open(self, centre_hz: float) -> float:
         return centre_hz
 
-    async def set_gain(self, gain_db: float) -> None: ...
-
     async def blocks(self) -> AsyncIterator[IqBlock]:
         for k in range(0, 400, self.every):
             lost = 1000 * (self.every - 1)

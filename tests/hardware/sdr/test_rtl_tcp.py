@@ -14,7 +14,7 @@ from refusals import refusing
 from hardware.ports import ReceiverError
 from hardware.readings import Channel
 from hardware.reasons.radio import NotRtlTcp, RtlSdrSampleRate, RtlTcpEnded, RtlTcpUnreachable
-from hardware.reasons.receiver import GainFixed, ReceiverSilent
+from hardware.reasons.receiver import ReceiverSilent
 from hardware.sdr.receiver import IqReceiver
 from hardware.sdr.rtl_tcp import RtlTcpSource
 
@@ -88,20 +88,6 @@ async def test_power_of_a_tone_through_the_whole_chain() -> None:
     assert codes[0x03] == 1
     assert codes[0x04] == 280
     assert codes[0x08] == 0
-
-
-async def test_gain_is_refused_inside_a_sweep() -> None:
-    async with running(RtlTcpServer(433_920_000.0)) as server:
-        receiver = IqReceiver(RtlTcpSource("127.0.0.1", server.port, RATE_HZ))
-        await receiver.open([Channel(433_920_000.0)])
-        receiver.freeze_gain()
-        with refusing(GainFixed("sweep"), ReceiverError):
-            await receiver.set_gain(10.0)
-        receiver.thaw_gain()
-        await receiver.set_gain(10.0)
-        await asyncio.sleep(0.05)
-        await receiver.close()
-    assert server.commands[-1] == (0x04, 100)
 
 
 async def test_stream_that_ends_and_stranger_and_nobody_are_clear_errors() -> None:

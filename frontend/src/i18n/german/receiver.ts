@@ -30,10 +30,6 @@ export const receiver = {
     text: "Der Empfänger liefert eine Leistung von {value} dB, die es nicht geben kann; solche Messwerte werden ausgelassen.",
     remedy: "Den Empfänger und seinen Treiber prüfen.",
   },
-  gain_fixed: {
-    text: "Die Verstärkung {why?recording=einer Aufnahme lässt sich nicht ändern|sweep=darf sich während einer Drehung nicht ändern}.",
-    remedy: "{why?recording=Mit anderer Verstärkung noch einmal aufnehmen|sweep=Sie vor oder nach der Drehung einstellen}.",
-  },
   recorded_sweep_empty: { text: "Die aufgenommene Drehung enthält keinen Messwert.", remedy: "Eine andere Aufnahme angeben." },
 
   no_channel: { text: "Vom Empfänger wurde kein Kanal verlangt.", remedy: "Mindestens einen Sender mit seiner Frequenz nennen." },
