@@ -86,7 +86,7 @@ class Search:
         await self.shown.ready(90)
         await self.shown.watch()
         await self.shown.start(90)
-        await self.shown.until_event("took_off", wall_s=90)
+        await self.shown.until(lambda: self.shown.phases[-1:] == ["flying"], 120)
         self.proxy.delay_s = delay_s
 
     async def strike(self, blow: Blow) -> Struck:

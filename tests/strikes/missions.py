@@ -32,7 +32,7 @@ import websockets
 from backend.cli.demo_flight import DemoFailed, fly
 from backend.cli.demo_grade import MissionLog, summary
 from backend.cli.running import running_server
-from backend.events import FIRST_CRAFT, BearingMeasured, HeardOnTheWay, MissionDrafted, SweepRejected
+from backend.events import FIRST_CRAFT, BearingMeasured, HeardOnTheWay, MissionDrafted, PhaseChanged, SweepRejected
 from backend.mission.flights import Flights
 from backend.settings import Settings
 from hardware.autopilot.status_texts import StatusTexts
@@ -74,7 +74,7 @@ class Flown:
 
     turned_deg: yaw, to and fro, faster than `TURNING_DEG_S`, until it ended. drawn_mah: by the autopilot's count.
     speed_m_s: median over ground while flying. tilt_deg: of 99 in 100 attitudes, at most. nose: of each leg that swung.
-    turns_deg: how far each turn went of a mission that decides it; empty where all are whole.
+    turns_deg: how far each turn went of a mission that decides it; empty where all are whole. planned_s: in the phase.
     orders: how often each reached the vehicle. texts: the autopilot's warnings and worse, each once, with how often.
     failed: why the mission was not flown to its end; "" when it was.
     """
@@ -97,6 +97,7 @@ class Flown:
     tilt_deg: float | None = None
     nose: tuple[NoseSwung, ...] = ()
     turns_deg: tuple[float, ...] = ()
+    planned_s: float = 0.0
     failed: str = ""
 
     @property
@@ -194,6 +195,13 @@ def turns_deg(log: MissionLog) -> tuple[float, ...]:
     return tuple(one.turn.turned_deg for one in sweeps if one.turn is not None and one.emitter_id == name)
 
 
+def planned_s(log: MissionLog) -> float:
+    """In which the craft hovered and waited for the planner: much on a busy machine."""
+    changed = [record for record in log.recorded if isinstance(record.event, PhaseChanged)]
+    waits = ((b, a) for b, a in pairwise(changed) if isinstance(b.event, PhaseChanged) and b.event.after == "planning")
+    return sum((after.at_utc - before.at_utc).total_seconds() for before, after in waits)
+
+
 def _first_emitter(log: MissionLog) -> str:
     return log.all(MissionDrafted)[-1].spec.emitters[0].emitter_id
 
@@ -217,12 +225,12 @@ async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | 
                 running.receiver.follow(witness(proxy))
                 vehicle = running.services.missions.equipment.crafts[FIRST_CRAFT].vehicle
                 found, failed = dict[str, Any](), ""
-                nose, turns = tuple[NoseSwung, ...](), tuple[float, ...]()
+                nose, turns, waited_s = tuple[NoseSwung, ...](), tuple[float, ...](), 0.0
                 began_s = time.monotonic()
                 try:
                     log = await fly(running, settings, changes=changes)
                     found = summary(log, settings, running.receiver.truth)
-                    nose, turns = noses(log), turns_deg(log)
+                    nose, turns, waited_s = noses(log), turns_deg(log), planned_s(log)
                 except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
                     failed = f"{type(error).__name__}: {error}"
                     await _land(vehicle)
@@ -248,6 +256,7 @@ async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | 
                 tilt_deg=tilt_deg(proxy.record),
                 nose=nose,
                 turns_deg=turns,
+                planned_s=waited_s,
                 failed=failed,
             )
 

@@ -47,6 +47,7 @@ def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
             plain(f"turns {turns}: localized", sum(f.localized for f in flown), "", note=note),
             plain(f"turns {turns}: truth in C95", sum(bool(f.in_c95) for f in flown), "", note=note),
             plain(f"turns {turns}: time, mean", statistics.fmean(f.took_s for f in flown), "s", note=note),
+            plain(f"turns {turns}: of it planning, mean", statistics.fmean(f.planned_s for f in flown), "s", note=note),
             plain(
                 f"turns {turns}: turned, mean",
                 statistics.fmean(flight.turned_deg for flight in flown),
@@ -90,6 +91,7 @@ def table(flights: dict[str, list[Flown]]) -> Table:
         Column(name="turns"),
         Column(name="outcome"),
         Column(name="time, s", decimals=0),
+        Column(name="of it planning, s", decimals=0),
         Column(name="turned, deg", decimals=0),
         Column(name="drawn, mAh", decimals=0),
         Column(name="speed, m/s", decimals=1),
@@ -109,6 +111,7 @@ def table(flights: dict[str, list[Flown]]) -> Table:
             turns,
             flight.failed or flight.outcome,
             flight.took_s,
+            flight.planned_s,
             flight.turned_deg,
             flight.drawn_mah,
             flight.speed_m_s,
