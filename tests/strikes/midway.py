@@ -30,6 +30,7 @@ from hardware.ports import VehicleError
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
+from tests.strikes.__main__ import vars_of
 from tests.strikes.missions import FLYING_M_S, speed_m_s, witness
 from tests.strikes.nose import (
     Deed,
@@ -40,6 +41,7 @@ from tests.strikes.nose import (
     rate_deg_s,
     steered_after,
     stop_ordered,
+    way_home,
 )
 from tests.strikes.pilot import Pilot, piloted
 from tests.strikes.proxy import ATTITUDE, GLOBAL_POSITION, KEPT, Proxy, proxied
@@ -51,6 +53,8 @@ TURNS_DEG_S = 10.0
 LATER_S = 1.0
 """A strike comes at most this long after the nose was seen to turn."""
 WATCHED_S = 6.0
+BEFORE_S = 0.01
+"""An order of the way home is no part of what its abort is judged by."""
 MOMENT_S = 150.0
 """The longest wait for a swing or a sector."""
 SHOWS: dict[Deed, tuple[str, ...]] = {"pilot": ("manual",), "hold": ("hold",), "abort": ("hold", "returning")}
@@ -125,9 +129,12 @@ class Search:
         else:
             took_at_s = stop_ordered(record)
             steered_from_s = took_at_s or at_s
-            if blow.deed == "abort":  # the return turns the nose home
-                end_s = min(end_s, mode_ordered(record, RETURNS[self.flavour]) or end_s)
+        if blow.deed == "abort":  # then it flies home, or the autopilot returns: the nose turns there
+            begun = (way_home(record), mode_ordered(record, RETURNS[self.flavour]))
+            end_s = min((one - BEFORE_S for one in begun if one is not None), default=end_s)
         still_s, turned = came_to_rest(record, took_at_s or at_s, end_s)
+        if blow.deed == "abort" and still_s is None:
+            still_s = end_s - (took_at_s or at_s)
         struck = Struck(
             during=blow.during,
             deed=blow.deed,
@@ -168,7 +175,7 @@ class Search:
                 await self.shown.order("resume")
                 await asyncio.sleep(1.0)
             elif phase not in SEARCHES:
-                raise TimeoutError(f"the mission is {phase}")
+                raise TimeoutError(f"the mission is {phase}: {self.shown.of('phase_changed')[-1]['event']['reason']}")
             if phase != "measuring":
                 self.shown.messages.pop("sweep_progress", None)
             if self._turns(during):
@@ -240,6 +247,9 @@ async def _mission(
             finally:
                 proxy.delay_s = 0.0
                 await _down(running)
+                if given.record is not None:
+                    with given.record.open("a") as record:
+                        record.writelines(f"{json.dumps(vars_of(passed))}\n" for passed in proxy.record)
 
 
 async def _down(running: RunningServer) -> None:
@@ -333,6 +343,7 @@ def main() -> None:
     parser.add_argument("--delays", type=float, nargs="+", default=[0.0, 250.0], help="ms each way")
     parser.add_argument("--minutes", type=float, default=600.0, help="begin no mission after so long")
     parser.add_argument("--seed", type=int, default=1, help="of the first mission")
+    parser.add_argument("--record", type=Path, help="write what passed, a JSON line each")
     add_out(parser)
     given = parser.parse_args()
     given.begun = begin(__file__)

@@ -9,11 +9,13 @@ from itertools import pairwise
 from typing import Literal
 
 from hardware.autopilot.messages import CONDITION_YAW, REPOSITION, SET_MODE
-from tests.strikes.missions import TURNING_DEG_S, turned_deg
+from tests.strikes.missions import turned_deg
 from tests.strikes.proxy import ATTITUDE, COMMAND_INT, COMMAND_LONG, Passed
 
 Deed = Literal["pilot", "hold", "abort"]
 While = Literal["swing", "sector"]
+STILL_DEG_S = 5.0
+"""Below, a nose that hovers corrects its heading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +23,8 @@ class Struck:
     """One strike. rate_deg_s: of the nose as it was struck. took_s: from the deed until the autopilot obeyed its pilot,
     or our first order to stop reached it; None: neither came about.
 
-    shown_s: until the console showed it; None: it did not. still_s: from `took_s` on, until the nose turned no more;
-    None: it went on. turned_deg: of the nose meanwhile. steered: our orders of a place or of the nose that reached the
+    shown_s: until the console showed it; None: it did not. still_s: from `took_s` on, until the nose turned no more,
+    or the way home of an abort began; None: it went on. turned_deg: of the nose meanwhile. steered: our orders of a place or of the nose that reached the
     vehicle from then on, but for those that were under way to a pilot. undone: the autopilot left the pilot's mode.
     went_on: the search, when it was asked to.
     """
@@ -60,6 +62,11 @@ def stop_ordered(record: Sequence[Passed]) -> float | None:
     return next((passed.at_s for passed in record if _command(passed) and not steers(passed)), None)
 
 
+def way_home(record: Sequence[Passed]) -> float | None:
+    """When the first order of a place alone, as a flight home is, reached the vehicle."""
+    return next((p.at_s for p in record if steers(p) and math.isnan(p.fields.get("param4", 0.0))), None)
+
+
 def mode_ordered(record: Sequence[Passed], custom: tuple[float, float]) -> float | None:
     """When the first order of this mode reached the vehicle."""
     orders = (passed for passed in record if _command(passed) == SET_MODE)
@@ -88,7 +95,7 @@ def steered_after(record: Sequence[Passed], at_s: float) -> int:
 def came_to_rest(record: Sequence[Passed], from_s: float, to_s: float) -> tuple[float | None, float]:
     """(seconds from `from_s` until the nose turned no more, None: it still turned at `to_s`; degrees until then)."""
     within = [p for p in record if from_s <= p.at_s <= to_s and p.number == ATTITUDE and p.way == "from"]
-    turning = [passed.at_s for passed in within if abs(math.degrees(passed.fields["yawspeed"])) > TURNING_DEG_S]
+    turning = [passed.at_s for passed in within if abs(math.degrees(passed.fields["yawspeed"])) > STILL_DEG_S]
     turned = turned_deg(within)
     if not turning:
         return 0.0, turned

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from hardware.autopilot.messages import CONDITION_YAW, REPOSITION, SET_MODE
-from tests.strikes.nose import came_to_rest, mode_ordered, rate_deg_s, steered_after, stop_ordered
+from tests.strikes.nose import came_to_rest, mode_ordered, rate_deg_s, steered_after, stop_ordered, way_home
 from tests.strikes.proxy import ATTITUDE, COMMAND_INT, COMMAND_LONG, Passed
 
 
@@ -53,6 +53,14 @@ def test_places_and_yaws_steer_and_a_pause_or_a_mode_stops() -> None:
     assert mode_ordered(record, (4.0, 5.0)) == 12.0
     assert mode_ordered(record, (3.0, 0.0)) is None
     assert (steered_after(record, 10.5), steered_after(record, 11.0)) == (1, 0)
+
+
+def test_a_way_home_is_a_place_alone() -> None:
+    turn = Passed(10.0, "to", COMMAND_INT, {"command": REPOSITION, "param4": 1.5})
+    home = Passed(11.0, "to", COMMAND_INT, {"command": REPOSITION, "param4": math.nan})
+
+    assert way_home([turn]) is None
+    assert way_home([turn, home]) == 11.0
 
 
 def test_the_rate_is_the_one_told_last() -> None:
