@@ -23,10 +23,10 @@ class Struck:
     """One strike. rate_deg_s: of the nose as it was struck. took_s: from the deed until the autopilot obeyed its pilot,
     or our first order to stop reached it; None: neither came about.
 
-    shown_s: until the console showed it; None: it did not. still_s: from `took_s` on, until the nose turned no more,
-    or the way home of an abort began; None: it went on. turned_deg: of the nose meanwhile. steered: our orders of a place or of the nose that reached the
-    vehicle from then on, but for those that were under way to a pilot. undone: the autopilot left the pilot's mode.
-    went_on: the search, when it was asked to.
+    shown_s: until the console showed it; None: it did not. still_s: from `took_s` on, until the nose turned no more, or
+    the way home of an abort began; None: it went on. turned_deg: of the nose meanwhile, to and fro. steered: our orders
+    of a place or of the nose that reached the vehicle from then on, but for those that were under way to a pilot.
+    undone: the autopilot left the pilot's mode. went_on: the search, when it was asked to.
     """
 
     during: While
