@@ -38,7 +38,10 @@ BESIDE: dict[str, tuple[str, str, dict[str, bool]]] = {
 
 def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
     found = list[Figure]()
-    for turns, flown in flights.items():
+    for turns, begun in flights.items():
+        flown = [flight for flight in begun if not flight.failed]
+        if len(flown) < len(begun):
+            found.append(plain(f"turns {turns}: not flown to the end", len(begun) - len(flown), "", note=turns))
         if not flown:
             continue
         note = f"{turns}; {len(flown)} missions"
