@@ -80,6 +80,7 @@ ARDUPILOT = Dialect(
     hold=(set_mode((BRAKE, 0)),) * 3,
     hold_modes=frozenset({BRAKE}),
     stay=None,
+    hold_turns_nose=False,
     return_home=_order("return", RTL),
     land=_order("landing", LAND),
     before_take_off=_order("take_off_mode", GUIDED),

@@ -102,7 +102,8 @@ class Dialect:
     place_refused_texts: the beginnings of those by which it refuses a place that it has acknowledged.
     hold: commands that stop it, in the order to try them, those that change no mode in a hold mode only; hold_modes:
     the raw modes it then shows. stay: makes the place where it is the one it holds at; None: it comes to rest there by
-    itself. steering: the mode in which it flies to places and turns as told.
+    itself. hold_turns_nose: out of a flight, the first of these turns the nose as well. steering: the mode in which it
+    flies to places and turns as told.
     before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
@@ -126,6 +127,7 @@ class Dialect:
     hold: tuple[Outgoing, ...]
     hold_modes: frozenset[int]
     stay: Outgoing | None
+    hold_turns_nose: bool
     return_home: ModeOrder
     land: ModeOrder
     before_take_off: ModeOrder

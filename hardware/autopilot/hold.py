@@ -1,7 +1,8 @@
 """Hold: one order after the other until the vehicle brakes, then wait until it hovers.
 
 PX4 holds at a place that it reckons ahead while it still flies. It comes to rest metres beside that place and then
-creeps there, so a second order to stay follows as soon as it is slow.
+creeps there, so a second order to stay follows as soon as it is slow. While it brakes it turns its nose to that place,
+at up to 70 degrees a second and the whole way round from a swing's far side, so the nose is told to stay where it is.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from hardware.autopilot.commander import CommandDenied, Manoeuvre, ManoeuvreSuperseded, OutOfMode
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hover import Hover
-from hardware.autopilot.messages import Outgoing
+from hardware.autopilot.messages import Outgoing, yaw_alone
 from hardware.deadline import Deadline
 from hardware.ports import NotInControl, VehicleError
 from hardware.reasons.vehicle import AutopilotRefused, DoesNotHold, HoldIgnored
@@ -19,6 +20,9 @@ BRAKES_S, BRAKES_WALL_S = 3.0, 1.5
 """This long after a hold was ordered, the vehicle must be in a hold mode and slower."""
 SLOWER, NEVER_FAST_M_S = 0.6, 2.0
 """Slower: than this share of the highest speed seen since; what never was faster than NEVER_FAST_M_S need not be."""
+TAKEN_S = 0.2
+"""An order to hold that has arrived is surely taken after this. One of the nose alone that is taken together with it
+would put the place that was flown to before in its stead; PX4 looks for orders twenty times a second."""
 STAYS_M_S = 0.5
 """A vehicle this slow stops within some ten centimetres."""
 HOVERS_S, HOVERS_WALL_S = 20.0, 2.0
@@ -51,9 +55,12 @@ async def hold(guidance: Guidance) -> None:
 async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> bool:
     """True when it came to rest, or at least obeys; False when it does not."""
     monitor, dialect, snapshot = guidance.monitor, guidance.monitor.dialect, guidance.monitor.snapshot
+    fast = (snapshot.speed_m_s or 0.0) > NEVER_FAST_M_S
     await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
     brakes = Deadline(monitor.clock, BRAKES_S, BRAKES_WALL_S)
     rests = Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S)
+    if fast and dialect.hold_turns_nose:
+        await _keep_nose(guidance, manoeuvre)
     hover, hovers, highest_m_s = Hover(), False, 0.0
 
     def obeys() -> bool:
@@ -81,8 +88,21 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
     return True
 
 
+async def _keep_nose(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
+    """The nose stays where it is while the vehicle brakes. Without it the vehicle holds all the same."""
+    snapshot, modes = guidance.monitor.snapshot, guidance.monitor.dialect.hold_modes
+    await guidance.until(manoeuvre, Deadline(guidance.monitor.clock, TAKEN_S), lambda: False)
+    if snapshot.heading_deg is not None and snapshot.custom_mode in modes:
+        await _said(guidance, manoeuvre, yaw_alone(snapshot.heading_deg))
+
+
 async def _stay(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> None:
     """Hold at the present place. Without it the vehicle holds all the same, only less quietly."""
+    await _said(guidance, manoeuvre, outgoing)
+
+
+async def _said(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> None:
+    """Sent to a vehicle that holds; refused or unanswered, it is done without."""
     try:
         await guidance.send(manoeuvre, outgoing, guidance.monitor.dialect.hold_modes, "hold")
     except (NotInControl, ManoeuvreSuperseded):

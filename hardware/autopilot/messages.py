@@ -95,6 +95,12 @@ def pause_here() -> Outgoing:
     return replace(command_long(REPOSITION, -1.0, _SAME_MODE, 0.0), delivered=_REPOSITIONED)
 
 
+def yaw_alone(yaw_deg: float) -> Outgoing:
+    """The nose, in the mode that follows repositions; the place that was ordered last stays the one to be at."""
+    yaw_rad = math.remainder(math.radians(yaw_deg), 2.0 * math.pi)
+    return replace(command_long(REPOSITION, -1.0, _SAME_MODE, 0.0, yaw_rad), delivered=_REPOSITIONED)
+
+
 def message_interval(message_id: int, hz: float) -> Outgoing:
     """hz: how often the autopilot is to send that message from now on."""
     return command_long(SET_MESSAGE_INTERVAL, float(message_id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -86,6 +86,7 @@ PX4 = Dialect(
     hold=(pause_here(), pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),
     hold_modes=frozenset({HOLD}),
     stay=pause_here(),
+    hold_turns_nose=True,  # to where it stops, at MPC_YAW_MODE 0 (FlightTaskAuto.cpp)
     return_home=_order("return", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),
     land=_order("landing", _LAND, LANDING),
     before_take_off=_order("take_off_mode", _LOITER, HOLD, TAKING_OFF),

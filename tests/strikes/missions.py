@@ -32,7 +32,7 @@ import websockets
 from backend.cli.demo_flight import DemoFailed, fly
 from backend.cli.demo_grade import MissionLog, summary
 from backend.cli.running import running_server
-from backend.events import FIRST_CRAFT, HeardOnTheWay, MissionDrafted
+from backend.events import FIRST_CRAFT, BearingMeasured, HeardOnTheWay, MissionDrafted, PhaseChanged, SweepRejected
 from backend.mission.flights import Flights
 from backend.settings import Settings
 from hardware.autopilot.status_texts import StatusTexts
@@ -63,6 +63,7 @@ TURNING_DEG_S = 3.0
 """Below, an autopilot corrects its heading."""
 FLYING_M_S = 3.0
 """Below, it hovers, starts or brakes."""
+IN_WORDS = {True: "yes", False: "no", None: None}
 FALSE_TIMES = 3.0
 """A claim is false when its error is beyond this multiple of what it stated."""
 
@@ -73,6 +74,7 @@ class Flown:
 
     turned_deg: yaw, to and fro, faster than `TURNING_DEG_S`, until it ended. drawn_mah: by the autopilot's count.
     speed_m_s: median over ground while flying. tilt_deg: of 99 in 100 attitudes, at most. nose: of each leg that swung.
+    turns_deg: how far each turn went of a mission that decides it; empty where all are whole. planned_s: in the phase.
     orders: how often each reached the vehicle. texts: the autopilot's warnings and worse, each once, with how often.
     failed: why the mission was not flown to its end; "" when it was.
     """
@@ -94,6 +96,8 @@ class Flown:
     speed_m_s: float | None = None
     tilt_deg: float | None = None
     nose: tuple[NoseSwung, ...] = ()
+    turns_deg: tuple[float, ...] = ()
+    planned_s: float = 0.0
     failed: str = ""
 
     @property
@@ -180,9 +184,26 @@ def tilt_deg(record: Sequence[Passed]) -> float | None:
 
 def noses(log: MissionLog) -> tuple[NoseSwung, ...]:
     """Of the first emitter's legs."""
-    name = log.all(MissionDrafted)[-1].spec.emitters[0].emitter_id
-    told = [reason for leg in log.all(HeardOnTheWay, name) for reason in leg.nose]
+    told = [reason for leg in log.all(HeardOnTheWay, _first_emitter(log)) for reason in leg.nose]
     return tuple(reason for reason in told if isinstance(reason, NoseSwung))
+
+
+def turns_deg(log: MissionLog) -> tuple[float, ...]:
+    """Of the first emitter's sweeps, in order."""
+    sweeps = [record.event for record in log.recorded if isinstance(record.event, BearingMeasured | SweepRejected)]
+    name = _first_emitter(log)
+    return tuple(one.turn.turned_deg for one in sweeps if one.turn is not None and one.emitter_id == name)
+
+
+def planned_s(log: MissionLog) -> float:
+    """In which the craft hovered and waited for the planner: much on a busy machine."""
+    changed = [record for record in log.recorded if isinstance(record.event, PhaseChanged)]
+    waits = ((b, a) for b, a in pairwise(changed) if isinstance(b.event, PhaseChanged) and b.event.after == "planning")
+    return sum((after.at_utc - before.at_utc).total_seconds() for before, after in waits)
+
+
+def _first_emitter(log: MissionLog) -> str:
+    return log.all(MissionDrafted)[-1].spec.emitters[0].emitter_id
 
 
 async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | None = None) -> Flown:
@@ -203,11 +224,13 @@ async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | 
                 assert running.receiver is not None
                 running.receiver.follow(witness(proxy))
                 vehicle = running.services.missions.equipment.crafts[FIRST_CRAFT].vehicle
-                found, nose, failed = dict[str, Any](), tuple[NoseSwung, ...](), ""
+                found, failed = dict[str, Any](), ""
+                nose, turns, waited_s = tuple[NoseSwung, ...](), tuple[float, ...](), 0.0
                 began_s = time.monotonic()
                 try:
                     log = await fly(running, settings, changes=changes)
-                    found, nose = summary(log, settings, running.receiver.truth), noses(log)
+                    found = summary(log, settings, running.receiver.truth)
+                    nose, turns, waited_s = noses(log), turns_deg(log), planned_s(log)
                 except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
                     failed = f"{type(error).__name__}: {error}"
                     await _land(vehicle)
@@ -232,6 +255,8 @@ async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | 
                 speed_m_s=speed_m_s(proxy.record),
                 tilt_deg=tilt_deg(proxy.record),
                 nose=nose,
+                turns_deg=turns,
+                planned_s=waited_s,
                 failed=failed,
             )
 
@@ -290,7 +315,7 @@ def missions_table(flights: Sequence[Flown]) -> Table:
             flown.failed or flown.outcome,
             flown.error_m,
             flown.stated_m,
-            {True: "yes", False: "no", None: None}[flown.in_c95],
+            IN_WORDS[flown.in_c95],
             len(flown.bearing_errors_deg),
             max(map(abs, flown.bearing_errors_deg), default=None),
             "; ".join(flown.holds),

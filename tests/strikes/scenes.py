@@ -162,7 +162,7 @@ class Field:
 
     def _skipped(self, scene: Scene) -> int:
         """Of the commands that count for a scene, how many pass before the one that is aimed at."""
-        return {"turn": self.chance.randrange(4), "stay": 1}.get(scene, 0)
+        return {"turn": self.chance.randrange(4), "stay": 2}.get(scene, 0)
 
     def _speed(self) -> float:
         telemetry = self.vehicle.telemetry()

@@ -3,9 +3,10 @@ and what the nose does when it is asked to swing in flight.
 
     python -m tests.strikes.turns udpin://127.0.0.1:14540 --flavour px4 --pairs 3
     python -m tests.strikes.turns udpin://127.0.0.1:14540 --flavour px4 --pairs 3 --beside swings
+    python -m tests.strikes.turns udpin://127.0.0.1:14540 --flavour px4 --pairs 5 --beside new --delays 0 80
 
-Each seed has its own emitter and is flown twice: with whole turns, and as `--beside` says. Prints a line a mission,
-then one JSON object; ends with status 1 when a mission failed or claimed a place that is not so.
+Each seed has its own emitter and is flown twice: with whole turns and a still nose, and as `--beside` says. Prints a
+line a mission, then one JSON object; ends with status 1 when a mission failed or claimed a place that is not so.
 """
 
 from __future__ import annotations
@@ -17,22 +18,30 @@ import statistics
 import sys
 from collections.abc import Sequence
 
+from backend.events.bearings import WHOLE_DEG
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
-from tests.strikes.missions import Flown, line, one
+from tests.strikes.missions import IN_WORDS, Flown, line, one
 
 WHOLE = "whole"
+STILL = {"sector_turns": False, "listen_on_the_way": False, "swing_on_the_way": False, "never_stop": False}
+"""What `sensor` of a mission says of whole turns and a still nose, whatever new missions do."""
+LISTENS = {"listen_on_the_way": True, "swing_on_the_way": True}
 BESIDE: dict[str, tuple[str, str, dict[str, bool]]] = {
-    "sectors": ("turns", "as far as needed", {"sector_turns": True}),
-    "swings": ("swings", "whole, nose swung on the way", {"listen_on_the_way": True, "swing_on_the_way": True}),
+    "sectors": ("turns", "as far as needed", STILL | {"sector_turns": True}),
+    "swings": ("swings", "whole, nose swung on the way", STILL | LISTENS),
+    "new": ("new", "as in new missions", STILL | {"sector_turns": True} | LISTENS),
 }
-"""The record, in words, and as `sensor` of a mission says it."""
+"""The record, in words, and as `sensor` says it."""
 
 
 def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
     found = list[Figure]()
-    for turns, flown in flights.items():
+    for turns, begun in flights.items():
+        flown = [flight for flight in begun if not flight.failed]
+        if len(flown) < len(begun):
+            found.append(plain(f"turns {turns}: not flown to the end", len(begun) - len(flown), "", note=turns))
         if not flown:
             continue
         note = f"{turns}; {len(flown)} missions"
@@ -41,6 +50,7 @@ def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
             plain(f"turns {turns}: localized", sum(f.localized for f in flown), "", note=note),
             plain(f"turns {turns}: truth in C95", sum(bool(f.in_c95) for f in flown), "", note=note),
             plain(f"turns {turns}: time, mean", statistics.fmean(f.took_s for f in flown), "s", note=note),
+            plain(f"turns {turns}: of it planning, mean", statistics.fmean(f.planned_s for f in flown), "s", note=note),
             plain(
                 f"turns {turns}: turned, mean",
                 statistics.fmean(flight.turned_deg for flight in flown),
@@ -51,6 +61,14 @@ def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
         speeds = [flight.speed_m_s for flight in flown if flight.speed_m_s is not None]
         if speeds:
             found.append(plain(f"turns {turns}: speed over ground, mean", statistics.fmean(speeds), "m/s", note=note))
+        turns_made = [deg for flight in flown for deg in flight.turns_deg]
+        if turns_made:
+            of = f"{len(turns_made)} turns of {note}"
+            less = sum(deg < WHOLE_DEG for deg in turns_made)
+            found += [
+                plain(f"turns {turns}: that went less than all the way round", less, "", note=of),
+                plain(f"turns {turns}: degrees of a turn, median", statistics.median(turns_made), "deg", note=of),
+            ]
         tilts = [flight.tilt_deg for flight in flown if flight.tilt_deg is not None]
         if tilts:
             found.append(plain(f"turns {turns}: tilt, at most", max(tilts), "deg", note=f"{note}; 99 % of the time"))
@@ -72,32 +90,42 @@ def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
 def table(flights: dict[str, list[Flown]]) -> Table:
     columns = (
         Column(name="seed"),
+        Column(name="delay each way, ms"),
         Column(name="turns"),
         Column(name="outcome"),
         Column(name="time, s", decimals=0),
+        Column(name="of it planning, s", decimals=0),
         Column(name="turned, deg", decimals=0),
         Column(name="drawn, mAh", decimals=0),
         Column(name="speed, m/s", decimals=1),
         Column(name="tilt, deg", decimals=0),
         Column(name="legs swung"),
+        Column(name="nose behind, deg", decimals=0),
         Column(name="bearings"),
+        Column(name="degrees of each turn"),
         Column(name="error, m", decimals=1),
         Column(name="stated, m", decimals=1),
+        Column(name="in C95"),
     )
     rows = tuple(
         (
             flight.seed,
+            round(flight.delay_s * 1e3),
             turns,
             flight.failed or flight.outcome,
             flight.took_s,
+            flight.planned_s,
             flight.turned_deg,
             flight.drawn_mah,
             flight.speed_m_s,
             flight.tilt_deg,
             len(flight.nose),
+            max((leg.lag_deg for leg in flight.nose), default=None),
             len(flight.bearing_errors_deg),
+            ", ".join(f"{deg:.0f}" for deg in flight.turns_deg),
             flight.error_m,
             flight.stated_m,
+            IN_WORDS[flight.in_c95],
         )
         for pair in zip(*flights.values(), strict=False)
         for turns, flight in zip(flights, pair, strict=True)
@@ -107,12 +135,12 @@ def table(flights: dict[str, list[Flown]]) -> Table:
 
 async def run(given: argparse.Namespace) -> dict[str, list[Flown]]:
     record, words, wanted = BESIDE[given.beside]
-    both = {WHOLE: dict.fromkeys(wanted, False), words: wanted}
+    both = {WHOLE: STILL, words: wanted}
     flights: dict[str, list[Flown]] = {turns: [] for turns in both}
     for number in range(given.pairs):
+        delay_s = given.delays[number % len(given.delays)] / 1e3
         for turns, sensor in both.items():
-            changes = {"sensor": sensor}
-            flights[turns].append(await one(given.vehicle, given.seed + number, given.delay / 1e3, changes))
+            flights[turns].append(await one(given.vehicle, given.seed + number, delay_s, {"sensor": sensor}))
             print(f"{turns}: {line(flights[turns][-1])}", flush=True)
         title = f"Turns {words}, on a real autopilot, {given.flavour}"
         tables = [table(flights)]
@@ -132,7 +160,7 @@ def main() -> None:
     parser.add_argument("--beside", choices=sorted(BESIDE), default="sectors", help="what whole turns are held against")
     parser.add_argument("--pairs", type=int, default=3)
     parser.add_argument("--seed", type=int, default=1, help="of the first pair")
-    parser.add_argument("--delay", type=float, default=0.0, help="ms each way")
+    parser.add_argument("--delays", type=float, nargs="+", default=[0.0], help="ms each way, of the pairs in turn")
     add_out(parser)
     given = parser.parse_args()
     given.begun = begin(__file__)

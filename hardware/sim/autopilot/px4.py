@@ -26,6 +26,8 @@ STOP_REACH = 0.25
 """Its stop point is nearer than it can brake: from 7 m/s it flies some 5 m past it and back."""
 CREEPS_M = 2.2
 """So near to that stop point it is all but at rest, and needs some ten seconds for the rest of the way."""
+FACES_ITS_STOP_M_S = 2.5
+"""Until it brakes to this it turns its nose to its stop point, unless it is told of a yaw."""
 REPOSITION_KEPT = 0.5
 """Seconds for which a reposition that came in another mode is carried out when HOLD is entered (PX4's loiter.cpp)."""
 
@@ -104,11 +106,13 @@ class Px4(Firmware):
         super().__init__(conditions, Parameters(DEFAULTS, bytewise=True))
         self._take_off_up = 0.0
         self._kept: tuple[float, Command] | None = None
+        self._faces_its_stop = False
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
     def enter(self, mode: str) -> None:
         flight = self.flight
+        self._faces_its_stop = False
         if mode == "RETURN":
             p = self.parameters
             flight.return_home(p["RTL_RETURN_ALT"], p["MPC_XY_CRUISE"], p["RTL_DESCEND_ALT"], p["RTL_LAND_DELAY"])
@@ -118,12 +122,15 @@ class Px4(Firmware):
             if flight.armed:
                 flight.take_off(self._take_off_up)
         elif flight.in_air:
-            flight.stop(STOP_REACH, CREEPS_M)
+            self._pause() if mode == "HOLD" else flight.stop(STOP_REACH, CREEPS_M)
             if mode == "HOLD" and self._kept is not None and self.time - self._kept[0] < REPOSITION_KEPT:
                 self._fly(self._kept[1])
 
     def watch(self) -> None:
         flight = self.flight
+        if self._faces_its_stop and self._speed() < FACES_ITS_STOP_M_S:
+            self._faces_its_stop = False
+            flight.turn_by(0.0, self.parameters["MPC_YAWRAUTO_MAX"])
         if self.mode == "TAKEOFF":
             if flight.task == "idle":
                 flight.take_off(self._take_off_up)
@@ -209,9 +216,15 @@ class Px4(Firmware):
         if self._refused_place(command):
             return
         if command.lat is None and math.isnan(command.z) and math.isnan(command.p4):
-            self.flight.stop(STOP_REACH, CREEPS_M)  # "all three set to NaN - pause vehicle"
+            self._pause()  # "all three set to NaN - pause vehicle"
             return
-        place = nav.north, nav.east
+        self._faces_its_stop = False
+        demand, flies = self.flight.demand, self.flight.task == "fly"
+        place = (demand.north, demand.east) if flies else (nav.north, nav.east)
+        if command.lat is None and flies and math.isnan(command.z):  # a yaw alone
+            if not self._spoiled_yaw():
+                self.flight.turn_to(math.degrees(command.p4), self.parameters["MPC_YAWRAUTO_MAX"])
+            return
         if command.lat is not None and command.lon is not None:
             place = self.home.to_local(command.lat, command.lon)
         up = command.z - self.home.amsl_m if not math.isnan(command.z) else nav.up
@@ -224,6 +237,19 @@ class Px4(Firmware):
         elif yaw is None and math.hypot(place[0] - nav.north, place[1] - nav.east) > 2.0:
             # with no yaw asked for the nose turns to where it flies
             self.flight.turn_to(math.degrees(math.atan2(place[1] - nav.east, place[0] - nav.north)), limit)
+
+    def _pause(self) -> None:
+        flight = self.flight
+        flight.stop(STOP_REACH, CREEPS_M)
+        self._faces_its_stop = self._speed() > FACES_ITS_STOP_M_S
+        if self._faces_its_stop:
+            copter = flight.copter
+            course = math.degrees(math.atan2(copter.v_east, copter.v_north))
+            flight.turn_to(course, self.parameters["MPC_YAWRAUTO_MAX"])
+
+    def _speed(self) -> float:
+        """Over ground, m/s."""
+        return math.hypot(self.flight.copter.v_north, self.flight.copter.v_east)
 
     def _refused_place(self, command: Command) -> bool:
         """The commander has accepted it before the navigator looks at the fence, and says no by a text alone."""

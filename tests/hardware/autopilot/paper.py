@@ -31,7 +31,7 @@ class HandClock(WallClock):
 
 class PaperLink:
     """A command is acknowledged at once, unless `answers` is False. `opened`: what is heard while the link is opened;
-    `requested`: what is heard when a message of that number is asked for; `sent`: MAV_CMD."""
+    `requested`: what is heard when a message of that number is asked for; `sent`: MAV_CMD, `fields`: of each."""
 
     url = "paper"
 
@@ -39,6 +39,7 @@ class PaperLink:
         self.heard = heard
         self.opened = opened
         self.sent: list[int] = []
+        self.fields: list[Fields] = []
         self.answers = True
         self.requested = dict[int, tuple[str, Fields]]()
         self.result = 0
@@ -55,6 +56,7 @@ class PaperLink:
             return True
         number = fields["command"]
         self.sent.append(number)
+        self.fields.append(fields)
         if number == REQUEST_MESSAGE and fields["param1"] in self.requested:
             self.heard(*self.requested[fields["param1"]])
         if not self.answers:

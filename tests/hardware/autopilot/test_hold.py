@@ -9,7 +9,7 @@ import pytest
 from paper import PLACE, POSCTL, Scene
 
 from hardware.autopilot.guidance import Guidance
-from hardware.autopilot.hold import BRAKES_S, STAYS_M_S, hold
+from hardware.autopilot.hold import BRAKES_S, STAYS_M_S, TAKEN_S, hold
 from hardware.autopilot.hover import SETTLED_S
 from hardware.autopilot.messages import REPOSITION
 from hardware.autopilot.px4 import HOLD
@@ -92,3 +92,28 @@ async def test_an_autopilot_that_rests_where_it_stops_is_told_nothing_more(
     await moves(flying, 0.1, SETTLED_S + 0.5)
     await asyncio.wait_for(ordered, 1.0)
     assert flying.link.sent == [REPOSITION]
+
+
+async def test_a_nose_that_px4_would_turn_is_told_to_stay_once_the_hold_is_surely_taken(flying: Scene) -> None:
+    flying.hear("ATTITUDE", {"time_boot_ms": 1, "roll": 0.0, "pitch": 0.0, "yaw": 2.0, "yawspeed": 0.5})
+    ordered = await holding(flying)
+    before_s = flying.clock.at
+    while flying.link.sent == [REPOSITION]:
+        await moves(flying, 6.5, 0.1)
+        assert flying.clock.at - before_s < TAKEN_S + 0.2
+    assert flying.link.sent == [REPOSITION, REPOSITION]
+    assert flying.link.fields[-1]["param4"] == pytest.approx(2.0)
+    assert all(flying.link.fields[-1][f"param{number}"] is None for number in (5, 6, 7))
+    await moves(flying, 0.1, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)
+    assert flying.link.sent == [REPOSITION] * 3
+
+
+async def test_a_nose_is_left_alone_by_a_hold_of_a_vehicle_that_hovers(flying: Scene) -> None:
+    flying.hear("ATTITUDE", {"time_boot_ms": 1, "roll": 0.0, "pitch": 0.0, "yaw": 2.0, "yawspeed": 0.5})
+    flying.mode(HOLD)
+    await moves(flying, 0.2)
+    ordered = asyncio.create_task(hold(Guidance(flying.monitor)))
+    await moves(flying, 0.2, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)
+    assert [fields["param4"] for fields in flying.link.fields if fields["command"] == REPOSITION] == [None, None]

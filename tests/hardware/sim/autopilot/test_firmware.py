@@ -310,6 +310,39 @@ def test_a_speed_that_is_none_is_denied_and_it_flies_on(flavour: type[Px4], spee
     assert off(firmware, 40.0, 0.0) < 2.0
 
 
+PAUSE = Command(REPOSITION, -1.0, 0.0, 0.0)
+
+
+def looking_back() -> Firmware:
+    """A PX4 at full speed north, its nose south-east."""
+    firmware = flying(Px4)
+    firmware.command(goto(200.0, 0.0, yaw=math.radians(135.0)))
+    run(firmware, 10.0)
+    assert firmware.copter.v_north > 5.0
+    assert firmware.copter.heading % 360.0 == pytest.approx(135.0, abs=2.0)
+    return firmware
+
+
+def test_px4_turns_its_nose_to_its_stop_point_while_it_brakes() -> None:
+    firmware = looking_back()
+    firmware.command(PAUSE)
+    run(firmware, 10.0)
+    assert firmware.copter.heading % 360.0 < 90.0
+
+
+def test_a_yaw_alone_keeps_the_nose_of_a_px4_that_brakes_and_its_stop_point() -> None:
+    firmware = looking_back()
+    firmware.command(PAUSE)
+    stop = firmware.flight.demand.north
+    run(firmware, 0.3)
+    nose = firmware.copter.heading
+    assert firmware.command(Command(REPOSITION, -1.0, 0.0, 0.0, math.radians(nose))) == UNSUPPORTED
+    run(firmware, 10.0)
+    assert firmware.copter.heading == pytest.approx(nose, abs=2.0)
+    assert firmware.flight.demand.north == stop
+    assert off(firmware, stop, 0.0) < 2.5
+
+
 def test_px4_flies_past_its_stop_point_and_turns_back() -> None:
     """Slow for a moment with metres to go: a hold reported then is reported too early."""
     firmware = flying(Px4)
