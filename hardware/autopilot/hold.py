@@ -81,7 +81,7 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
     if dialect.stay is not None:
         await guidance.until(manoeuvre, rests, lambda: decided() or nearly_rests())
         if nearly_rests():
-            await _stay(guidance, manoeuvre, dialect.stay)
+            await _said(guidance, manoeuvre, dialect.stay)
     if await guidance.until(manoeuvre, rests, decided):
         return hovers
     monitor.announce(StillMoving(snapshot.speed_m_s or 0.0))
@@ -89,20 +89,15 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
 
 
 async def _keep_nose(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
-    """The nose stays where it is while the vehicle brakes. Without it the vehicle holds all the same."""
+    """The nose stays where it is while the vehicle brakes."""
     snapshot, modes = guidance.monitor.snapshot, guidance.monitor.dialect.hold_modes
     await guidance.until(manoeuvre, Deadline(guidance.monitor.clock, TAKEN_S), lambda: False)
     if snapshot.heading_deg is not None and snapshot.custom_mode in modes:
         await _said(guidance, manoeuvre, yaw_alone(snapshot.heading_deg))
 
 
-async def _stay(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> None:
-    """Hold at the present place. Without it the vehicle holds all the same, only less quietly."""
-    await _said(guidance, manoeuvre, outgoing)
-
-
 async def _said(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> None:
-    """Sent to a vehicle that holds; refused or unanswered, it is done without."""
+    """Sent to a vehicle that holds. Refused or unanswered, it holds all the same, only less quietly."""
     try:
         await guidance.send(manoeuvre, outgoing, guidance.monitor.dialect.hold_modes, "hold")
     except (NotInControl, ManoeuvreSuperseded):
