@@ -25,6 +25,7 @@ from backend.maps.terrain_folder import TerrainFolder
 from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.reasons.datagrams import NoSearchFlies
+from backend.search.first_beliefs import fold_first_beliefs
 from backend.search.forecast import preview
 from backend.search.localization import localization
 from backend.search.reported import ReportedBearing, on_our_clock
@@ -100,6 +101,13 @@ async def _bearings_by_udp(
 
 def _warming() -> asyncio.Task[None]:
     return asyncio.create_task(asyncio.to_thread(_warm_up))
+
+
+async def _then_beliefs(warming: asyncio.Task[None]) -> None:
+    """What a flight believes is compiled while the server answers already."""
+    await asyncio.gather(warming, return_exceptions=True)
+    home = Place(lat=0.0, lon=0.0)
+    await asyncio.to_thread(fold_first_beliefs, suggested_mission(home), home)
 
 
 def _receiver(
@@ -251,6 +259,7 @@ async def open_simulation(
                 warming = _warming()
             else:
                 await warming
+            warming = asyncio.create_task(_then_beliefs(warming))
             async with _bearings_by_udp(settings, missions, clock) as feed:
                 services = Services(
                     missions, journal, hub, settings, clock.now, payload,

@@ -15,6 +15,8 @@ from backend.events import (
     BearingMeasured,
     BeliefUpdated,
     HeardOnTheWay,
+    PlacePassed,
+    PlaceReached,
     PlanChosen,
     Recorded,
     Supposition,
@@ -33,9 +35,9 @@ from hardware.readings import Place
 from planner.belief.grid import GridBelief
 from planner.types import PlannerError
 
-SUPPOSED_KINDS = (*FOLDED_KINDS, "recording_imported")
-"""The events that the answer depends on: a sweep that was rejected may tell something through another antenna, and
-the antenna that flew is named at the start or the import."""
+SUPPOSED_KINDS = (*FOLDED_KINDS, "recording_imported", "place_reached", "place_passed")
+"""The events that the answer depends on: a sweep that was rejected may tell something through another antenna, the
+antenna that flew is named at the start or the import, and from a place that was passed the next one is chosen."""
 
 
 def what_if(
@@ -45,13 +47,13 @@ def what_if(
 
     recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken again, None: they stay as flown.
     """
-    found = suppose(_believed_by(recorded, wanted), wanted, wanted.bearings, antenna)
+    recorded = _believed_by(recorded, wanted)
+    found = suppose(recorded, wanted, wanted.bearings, antenna)
     if found is None:
         return None
     task, bearings, supposed = found.task, found.counted, found.sweeps
     fact, belief = found.said[-1]
-    platform = bearings[-1].place if bearings else found.home
-    number = max((fact.place_number for fact in bearings), default=0) + 1
+    platform, number = _last_place(recorded, bearings, found.home)
     plan, no_plan = _plan(task, _bearings(supposed), platform, number)
     frame = encode_belief(
         mission_id, task.emitter_id, 0, fact.bearings, belief.density, task.corners_lon_lat(belief), lite=True
@@ -110,6 +112,27 @@ def suppose(
         task = replace(bare.after(silent, legs[number]), beside=told if antenna is None else None)
         said.append(task.belief_fact(_bearings(supposed)))
     return Supposed(task, home, counted, flown, supposed, said, len(flown_legs) if antenna else 0)
+
+
+def _last_place(recorded: Sequence[Recorded], bearings: Sequence[BearingMeasured], home: Place) -> tuple[Place, int]:
+    """Where the craft chooses the next place, and that one's number: the last bearing's, or one passed since."""
+    newest = bearings[-1].bearing_id if bearings else None
+    platform = bearings[-1].place if bearings else home
+    number = max((fact.place_number for fact in bearings), default=0)
+    reached, since = dict[int, Place](), newest is None
+    for record in recorded:
+        match record.event:
+            case BearingMeasured(bearing_id=bearing_id) if since or bearing_id == newest:
+                if since:
+                    break
+                since = True
+            case PlaceReached(place_number=there, place=place):
+                reached[there] = place
+            case PlacePassed(place_number=there) if since and there in reached:
+                platform, number = reached[there], there
+            case _:
+                pass
+    return platform, number + 1
 
 
 def _believed_by(recorded: Sequence[Recorded], wanted: WhatIfRequest) -> Sequence[Recorded]:

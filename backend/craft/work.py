@@ -145,7 +145,10 @@ class Work:
         return inputs.SweepTaken(tuple(measured.fact for measured in found))
 
     def _turn_at(self, place: tuple[float, float], attempt: int) -> TurnPlan | None:
-        """The turn at a place (m ENU), from what is known now; None: this mission turns once around everywhere."""
+        """The turn at a place (m ENU), from what turns told until now; None: this mission turns once around everywhere.
+
+        What was heard on the way is not waited for.
+        """
         mission, search = self.task.mission, self.search()
         if not mission.sensor.turns_in_sectors:
             return None
@@ -153,7 +156,7 @@ class Work:
         if because is not None:
             return whole_turn(because)
         (emitter,) = search.emitters.values()
-        task = self.task.emitters[emitter.emitter_id]
+        task = self.task.emitters[emitter.emitter_id].asked(self.equipment.clock.now())
         bearings = task.planner_bearings(emitter.bearings)
         if task.belief(bearings) is None:
             return whole_turn("unsure")
@@ -219,9 +222,9 @@ class Work:
         return choice.model_copy(update={"first": come_first(ranks), "set_back": search.set_back})
 
     def _about(self, search: SearchState, emitter_id: str) -> Localization:
-        """Of an emitter, with the turn that is made for what is still looked for."""
+        """Of an emitter as things stand now, with the turn that is made for what is still looked for."""
         sought = [emitter.emitter_id for emitter in search.sought]
-        return self.task.together.about(search, emitter_id).turning_for(sought)
+        return self.task.together.about(search, emitter_id).turning_for(sought).asked(self.equipment.clock.now())
 
     def vetoes_against(self, place: Place, way: Sequence[tuple[float, float]] | None = None) -> tuple[Reason, ...]:
         """What safety has against flying to a place from where the vehicle is now. way: points in between (m ENU),

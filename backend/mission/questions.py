@@ -64,7 +64,9 @@ class Questions:
 
         emitters = search.sought if search.wanted else search.sought[:1]
         names = [one.emitter_id for one in emitters]
-        wanted = [(task.together.about(search, one.emitter_id).turning_for(names), one.bearings) for one in emitters]
+        now_s = self.equipment.clock.now()
+        about = [task.together.about(search, one.emitter_id).turning_for(names).asked(now_s) for one in emitters]
+        wanted = [(task, one.bearings) for task, one in zip(about, emitters, strict=True)]
         ranks = [search.rank(one.emitter_id) for one in emitters]
         found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
         if runner is not None and found.mean_s is not None:
@@ -91,7 +93,7 @@ class Questions:
             return emitter.emitter_id, len(emitter.bearings), None
         home = search.home or corner_of(search.mission.area)
         tasks = await asyncio.to_thread(together, search.mission, home, emitter.emitter_id)
-        task = tasks.about(search, emitter.emitter_id)
+        task = tasks.about(search, emitter.emitter_id).asked(self.equipment.clock.now())
         if (off_m := from_area_m(task, here)) > FARTHEST_M:
             raise MissionInputError(AskedFromTooFar(off_m), "place")
         return (

@@ -146,7 +146,8 @@ def import_facts(
         kept.append(KeptSweep(sweep_id, emitter.emitter_id, number, sweep))
         reading = finder.estimate(sweep, mounted(pattern, recorded, upload.offset_deg))
         taken = Taken(emitter.emitter_id, source, sweep_id, number, attempt=1)
-        heard.append(sweep_fact(taken, mission.sensor, sweep, reading, measurement_time_s=None))
+        middle_s = None if began_s is None else float(sweep.at_s[0] + sweep.at_s[-1]) / 2.0
+        heard.append(sweep_fact(taken, mission.sensor, sweep, reading, None, middle_s))
     begins = import_fact(upload, emitter, by, began_s, remarks, sweep_ids, antenna)
     return Import((begins, *with_beliefs(state, emitter.emitter_id, heard, began_s, each=True)), tuple(kept))
 

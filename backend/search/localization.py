@@ -50,7 +50,8 @@ class Localization:
 
     beside: adds to a belief by this emitter's own bearings what others tell of their source's errors
     (backend.search.together); None: nothing. stretches: of way on which it was heard. fewer_turned_for: whether turns
-    are made for fewer emitters than the mission has, and take another time than those for all.
+    are made for fewer emitters than the mission has, and take another time than those for all. asked_at_s: when it is
+    planned, UTC epoch seconds; None: right after the newest turn.
     """
 
     mission: MissionSpec
@@ -62,6 +63,7 @@ class Localization:
     beside: Callable[[GridBelief], GridBelief] | None = None
     stretches: tuple[Stretch, ...] = ()
     fewer_turned_for: bool = False
+    asked_at_s: float | None = None
     _folds: dict[tuple[Bearing, ...], GridBelief] = field(
         default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
     )
@@ -120,6 +122,10 @@ class Localization:
             return self
         return replace(self, problem=replace(self.problem, measurement_time=turn), fewer_turned_for=True)
 
+    def asked(self, at_s: float) -> Localization:
+        """The same for what is planned then: since the newest turn a flight, a hold or a busy machine took time."""
+        return replace(self, asked_at_s=at_s)
+
     def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
         """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""
         outliers = self.mission.sensor.outlier_probability
@@ -177,10 +183,11 @@ class Localization:
 
     def planning_belief(self, bearings: Sequence[Bearing]) -> GridBelief:
         """What to plan with: contradicting bearings count as possibly wrong, so that a next place tells them apart.
-        Of a moving emitter: where it may be by the next turn."""
+        Of a moving emitter: where it may be by the end of a turn from `asked_at_s` on."""
         found = self.belief(bearings)
         if isinstance(found, MovingBelief):
-            return predicted(found, self.problem.measurement_time)
+            waited_s = 0.0 if self.asked_at_s is None else max(self.asked_at_s - found.now, 0.0)
+            return predicted(found, waited_s + self.problem.measurement_time)
         if found is not None:
             return found
         doubted = (replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings)

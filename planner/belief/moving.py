@@ -35,6 +35,10 @@ MOST_CELLS = 96 * 96
 """The grid is refined where it stays below this: every bearing is weighed on every cell, several times over."""
 EDGE_SIGMAS = 3.0
 """So many standard deviations of its way beyond the area are looked at: nothing keeps the emitter inside."""
+FORGOTTEN = 3.0
+"""Standard deviations of the way; further than that a grid is too coarse to find where bearings cross."""
+WIDEST_CELLS = 8 * FIRST_CELLS
+"""Along a side, area and ways out of it, while the prior is spread out: how old a bearing is may be anything."""
 DEEPEST_REFINEMENT = 12
 SMALLEST_SIGMA = np.deg2rad(1.0)
 LEAST_RATE = 0.01
@@ -142,9 +146,10 @@ def _as_moving(grid: GridBelief, before: GridBelief, assumed: Assumed, **more: o
 
 
 def _weighed_at(belief: MovingBelief, folded: tuple[Bearing, ...], now: float) -> MovingBelief:
-    began = min(one.taken_at for one in folded)
+    recent = _since_last_pause(folded, belief.assumed.movement, belief.before)
+    began = min(one.taken_at for one in recent)
     grid, prior = _spread_out(belief.before, belief.assumed.movement, now - began)
-    weighing = _Weighing.of(folded, belief.assumed, now)
+    weighing = _Weighing.of(recent, belief.assumed, now)
     density, errors = weighing.mass(grid, prior)
     for _ in range(DEEPEST_REFINEMENT):
         grid, prior, density = _cropped(replace(grid, density=density), prior)
@@ -158,11 +163,22 @@ def _weighed_at(belief: MovingBelief, folded: tuple[Bearing, ...], now: float) -
     return _as_moving(found, belief.before, belief.assumed, folded=folded, now=now, errors=errors)
 
 
+def _since_last_pause(folded: Sequence[Bearing], movement: Movement, before: GridBelief) -> tuple[Bearing, ...]:
+    """What was taken before a pause in which the emitter may have gone FORGOTTEN times as far as the area is long, or
+    nobody knows when, tells nothing of the place; and the area is not about that time."""
+    length = max(before.nx, before.ny) * before.h
+    times = sorted(one.taken_at for one in folded)
+    gone = np.sqrt(movement.variance(np.diff(times))) > FORGOTTEN * length
+    since = times[int(np.flatnonzero(gone)[-1]) + 1] if gone.any() else times[0]
+    return tuple(one for one in folded if one.taken_at >= since)
+
+
 def _spread_out(before: GridBelief, movement: Movement, seconds: float) -> tuple[GridBelief, FloatArray]:
     """The prior after that time, on a grid that holds where the emitter may have gone."""
     from scipy.ndimage import gaussian_filter  # loaded by the first emitter that moves, not by every start
 
     sd = float(np.sqrt(movement.variance(seconds)))
+    before = _coarser(before, (max(before.nx, before.ny) + 2.0 * EDGE_SIGMAS * sd / before.h) / WIDEST_CELLS)
     cells = int(np.ceil(EDGE_SIGMAS * sd / before.h))
     step = max(1, int(np.ceil((max(before.nx, before.ny) + 2 * cells) / (2 * FIRST_CELLS))))
     padded = np.pad(before.density, ((cells, cells + (-(before.ny + 2 * cells)) % step),
@@ -173,6 +189,16 @@ def _spread_out(before: GridBelief, movement: Movement, seconds: float) -> tuple
     coarse /= coarse.sum()
     x0, y0 = before.x0 - cells * before.h, before.y0 - cells * before.h
     return replace(before, density=coarse, x0=x0, y0=y0, h=step * before.h, copies=1), coarse
+
+
+def _coarser(grid: GridBelief, times: float) -> GridBelief:
+    """The same mass in cells so many times as large, rounded up: a single one, where that is larger than the grid."""
+    step = int(np.ceil(times))
+    if step <= 1:
+        return grid
+    padded = np.pad(grid.density, ((0, -grid.ny % step), (0, -grid.nx % step)))
+    ny, nx = (side // step for side in padded.shape)
+    return replace(grid, density=padded.reshape(ny, step, nx, step).sum(axis=(1, 3)), h=step * grid.h)
 
 
 def _cropped(grid: GridBelief, prior: FloatArray) -> tuple[GridBelief, FloatArray, FloatArray]:

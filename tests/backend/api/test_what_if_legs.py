@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
+
 import pytest
-from ground import AREA, HOME, towards
+from ground import AREA, FRAME, HOME, towards
 from legs import TARGET, way
 
-from backend.events import MissionDrafted, MissionStarted
+from backend.api.what_if import _last_place
+from backend.events import MissionDrafted, MissionStarted, PlacePassed, PlaceReached, Recorded
+from backend.reasons.turning import WayToldEnough
 from backend.search.localization import localization
 from backend.spec import MissionSpec, SensorSpec
 
@@ -66,3 +70,35 @@ async def test_a_moment_is_an_event_number(client, flown):
     for until in (-1, "now", 1.5):
         answer = await client.post("/api/missions/m1/what-if", json={"bearings": 1, "until": until})
         assert answer.status_code == 422
+
+
+async def test_the_next_place_is_chosen_from_one_that_was_passed(client, services):
+    """A mission that never stops has flown on from where its last bearing was taken."""
+    sensor = SPEC.sensor.model_copy(update={"swing_on_the_way": True, "never_stop": True})
+    heard = TASK.after((), [way()]).belief_fact([FIRST])[0]
+    there = FRAME.to_geo(100.0, 0.0)
+    events = [
+        MissionDrafted(spec=SPEC.model_copy(update={"sensor": sensor})),
+        MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0"),
+        FIRST,
+        TASK.belief_fact([FIRST])[0],
+        PlaceReached(craft_id="craft-1", place_number=7, place=there, distance_m=0.0, flight_time_s=9.0),
+        *(way(), heard, PlacePassed(craft_id="craft-1", place_number=7, reason=WayToldEnough(6.0))),
+    ]
+    await services.journal.append("m1", events)
+    *_, passed = await services.journal.read("m1")
+    numbers = [(await asked(client, 1, until))["plan"]["place_number"] for until in (4, passed.seq, None)]
+    assert numbers == [FIRST.place_number + 1, 8, 8]
+
+
+def test_a_place_passed_before_the_last_bearing_is_left_behind():
+    there = PlaceReached(craft_id="craft-1", place_number=7, place=HOME, distance_m=0.0, flight_time_s=9.0)
+    passed = PlacePassed(craft_id="craft-1", place_number=7, reason=WayToldEnough(6.0))
+    at = datetime.fromtimestamp(0.0, UTC)
+    recorded = [
+        Recorded(seq=k, mission_id="m1", at_utc=at, event=event)
+        for k, event in enumerate((FIRST, there, passed, SECOND), start=1)
+    ]
+    assert _last_place(recorded, [FIRST], TASK.home) == (HOME, 8)
+    assert _last_place(recorded, [FIRST, SECOND], TASK.home) == (SECOND.place, SECOND.place_number + 1)
+    assert _last_place(recorded, [], TASK.home) == (TASK.home, 1)

@@ -27,7 +27,7 @@ from backend.reasons.search import (
 from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, Import, Upload, import_facts
 from backend.search.state import SearchState, evolve
-from backend.spec import MissionSpec
+from backend.spec import EmitterSpec, MissionSpec, MovementSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
@@ -228,3 +228,27 @@ def test_a_recorded_turn_of_270_degrees_is_a_bearing_like_any_other(bearing: flo
     (measured,) = (fact for fact in found if isinstance(fact, BearingMeasured))
     off = math.remainder(measured.bearing_deg - pattern.offset_to_nose_deg - bearing, 360.0)
     assert abs(off) < 2.0 * measured.sigma_deg < 40.0
+
+
+def test_a_sweep_tells_when_it_was_taken_where_that_is_known() -> None:
+    """An emitter that moves is not where it was."""
+    dated = imported(upload(recorded(-80.0, 10.0), recorded(80.0, 10.0, at_s=60.0), at_s=1.7e9))
+    times = [fact.taken_at_s for fact in dated.facts if isinstance(fact, BearingMeasured)]
+    assert times == pytest.approx([1.7e9 + 4.5, 1.7e9 + 64.5])
+    unknown = imported(upload(recorded(-80.0, 10.0)))
+    assert [fact.taken_at_s for fact in unknown.facts if isinstance(fact, BearingMeasured)] == [None]
+
+
+def test_a_recording_of_which_nobody_knows_when_stops_no_search_for_what_moves() -> None:
+    """Beside bearings whose time is known it tells nothing of where the emitter is by now."""
+    moves = EmitterSpec(movement=MovementSpec(kind="drifting", speed_m_s=0.4))
+    mission = spec([moves])
+    mission = mission.model_copy(update={"sensor": mission.sensor.model_copy(update={"bearing_errors": "joint"})})
+    state = drafted(mission)
+    for given in (upload(recorded(-80.0, 10.0), name="old"), upload(recorded(80.0, 10.0), name="new", at_s=1.7e9)):
+        found = import_facts("m", state, given, PointingFinder(TARGET), PATTERN, "ann")
+        for fact in found.facts:
+            state = evolve(state, fact, 1.7e9)
+    belief = state.emitters["emitter-1"].belief
+    assert belief is not None
+    assert (belief.bearings, belief.localized) == (2, False)

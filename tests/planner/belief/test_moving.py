@@ -1,13 +1,14 @@
 """The belief about an emitter that moves: what it must share with the still one, and what time does to it."""
 
 from dataclasses import replace
+from time import process_time
 
 import numpy as np
 import pytest
 
 from planner.belief.estimate import estimate, mass_within
 from planner.belief.grid import fold
-from planner.belief.moving import Assumed, moving_prior, predicted, update_moving
+from planner.belief.moving import MOST_CELLS, Assumed, moving_prior, predicted, update_moving
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.movement import DRIFTING_S, WALKING_S, Movement
@@ -119,3 +120,15 @@ def test_the_way_gone_is_that_of_walkers() -> None:
         float(np.hypot(*Walker(np.zeros(2), 0.4, 30.0, np.random.default_rng(seed)).at(120.0))) for seed in range(400)
     ]
     assert np.sqrt(np.mean(np.square(ways))) == pytest.approx(Movement(0.4, 30.0).way(120.0), rel=0.08)
+
+
+@pytest.mark.parametrize("age_s", [86_400.0, 1.76e9])
+def test_a_bearing_however_old_costs_no_more_than_a_new_one(age_s: float) -> None:
+    """One of yesterday, or one of which nobody said when: neither fills the memory nor stops the search."""
+    movement = Movement(0.4, DRIFTING_S)
+    new = tuple(replace(one, taken_at=age_s + one.taken_at) for one in CROSS)
+    began = process_time()
+    belief = folded(movement, towards(80, 60, (150, 120), 0.0), *new)
+    assert process_time() - began < 20.0
+    assert belief.density.size <= 4 * MOST_CELLS
+    assert mass_within(belief, 150, 120, 60.0) > 0.5

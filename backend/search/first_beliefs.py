@@ -1,0 +1,54 @@
+"""Every kind of belief that a flight may ask for, folded once on the ground, so that its machine code is there by then.
+
+On a new machine, or after an upgrade, that takes some twenty seconds of processor time; later it is read from the disk.
+"""
+
+from __future__ import annotations
+
+import math
+
+from backend.events import FIRST_CRAFT, CraftSource
+from backend.search.localization import Localization, localization
+from backend.search.planner_bearings import source_name
+from backend.spec import MissionSpec, MovementSpec, Place
+from planner.belief.grid import GridBelief
+from planner.belief.joint import JointBelief, heard_on_the_way
+from planner.belief.shared_source import with_shared_errors
+from planner.belief.verdict import verdict
+from planner.on_the_way import Stretch
+from planner.types import Bearing
+
+SOURCE = source_name(CraftSource(craft_id=FIRST_CRAFT))
+SIGMA = math.radians(7.0)
+TWICE = (Bearing(-60.0, 0.0, 0.8, SIGMA, 0.1, source=SOURCE), Bearing(60.0, 0.0, 2.3, SIGMA, 0.1, source=SOURCE))
+STRETCH = Stretch(
+    source=SOURCE,
+    x=(0.0, 5.0, 10.0),
+    y=(0.0, 0.0, 0.0),
+    front=(0.0, 0.8, 1.6),
+    power_db=(0.0, 3.0, 1.0),
+    gain_db=(0.0, -6.0, -15.0, -6.0),
+    sigma=SIGMA,
+    leg="leg",
+)
+
+
+def fold_first_beliefs(mission: MissionSpec, home: Place) -> None:
+    """Of an emitter that stands still, before and after a bearing, with and without a leg; of two that share their
+    errors; of one that moves. Heavy: call it off the event loop."""
+    task = localization(mission, home)
+    if isinstance(task.prior, JointBelief):
+        heard_on_the_way(task.prior, (STRETCH,))
+        known = _judged(task)
+        if isinstance(known, JointBelief):
+            known = heard_on_the_way(known, (STRETCH,))
+            with_shared_errors((known, known))
+    (emitter, *_) = mission.emitters
+    moves = emitter.model_copy(update={"movement": MovementSpec(kind="walking")})
+    _judged(localization(mission.model_copy(update={"emitters": [moves]}), home))
+
+
+def _judged(task: Localization) -> GridBelief:
+    belief = task.planning_belief(TWICE)
+    verdict(task.problem, task.rule, TWICE, belief)
+    return belief
