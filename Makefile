@@ -9,6 +9,9 @@ PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -pat
 
 .PHONY: run test coverage check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
 
+# The tests start some two hundred servers and vehicles: where no bytecode is kept, each compiles every source again.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
 
@@ -99,12 +102,13 @@ check-page:
 
 kernel: setup-dev ## compiled once here, not by each test worker
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
+	$(BIN)/python -c "from backend.wiring import compile_beliefs; compile_beliefs()"
 
 # By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
 # tests/conftest.py holds the marks to the folders, so that no run has to import the others' tests.
 # tests/conftest.py also puts the files that take longest first; xdist's own order knows only how many tests they have.
-BY_FILE := -n 2 --dist loadfile --no-loadscope-reorder
-UNIT_TESTS := $(BIN)/pytest $(BY_FILE) --hypothesis-profile ci -m "not system and not browser and not long" \
+BY_FILE := --dist loadfile --no-loadscope-reorder
+UNIT_TESTS := $(BIN)/pytest -n 3 $(BY_FILE) --hypothesis-profile ci -m "not system and not browser and not long" \
   --ignore tests/browser --ignore tests/system
 
 unit: kernel ## tests without a vehicle or a browser
@@ -114,15 +118,16 @@ coverage: kernel ## how much of the code the unit tests run: they take longer so
 	$(UNIT_TESTS) --cov --cov-report=
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
-# These wait for the wall's clock, and a machine that stands still for seconds fails them: what failed once is tried
-# once more, and the summary names it (RERUN), so that it is looked into.
+# These wait for the wall's clock, so that four beside one another keep two cores no busier than two that reckon; and a
+# machine that stands still for seconds fails them: what failed once is tried once more, and the summary names it
+# (RERUN), so that it is looked into.
 ONCE_MORE := --reruns 1 -rR
 
-system: setup-dev build ## whole missions over real sockets
-	$(BIN)/pytest tests/system tests/fuzz -m system $(ONCE_MORE) --durations 8
+system: setup-dev build kernel ## whole missions over real sockets
+	$(BIN)/pytest tests/system tests/fuzz -m system -n 4 --dist worksteal $(ONCE_MORE) --durations 8
 
-stories: setup-dev build browser ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
-	$(BIN)/pytest tests/browser $(BY_FILE) $(ONCE_MORE) --durations 8
+stories: setup-dev build browser kernel ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
+	$(BIN)/pytest tests/browser -n 4 $(BY_FILE) $(ONCE_MORE) --durations 8
 
 long: setup-dev ## the kernel against its reference 10,000 times, and tables recomputed: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600

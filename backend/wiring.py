@@ -103,11 +103,17 @@ def _warming() -> asyncio.Task[None]:
     return asyncio.create_task(asyncio.to_thread(_warm_up))
 
 
+def compile_beliefs() -> None:
+    """Every kind of belief that a flight may ask for."""
+    home = Place(lat=0.0, lon=0.0)
+    fold_first_beliefs(suggested_mission(home), home)
+    gc.freeze()
+
+
 async def _then_beliefs(warming: asyncio.Task[None]) -> None:
     """What a flight believes is compiled while the server answers already."""
     await asyncio.gather(warming, return_exceptions=True)
-    home = Place(lat=0.0, lon=0.0)
-    await asyncio.to_thread(fold_first_beliefs, suggested_mission(home), home)
+    await asyncio.to_thread(compile_beliefs)
 
 
 def _receiver(
