@@ -334,7 +334,7 @@ async def test_the_last_admin_stays_admin_whatever_the_provider_says(access: Acc
         ({"oidc_issuer": "https://sso.example"}, "OIDC_CLIENT_ID"),
         ({"oidc_roles": {"a": "pilot"}}, "OIDC_ROLE_CLAIM"),
         ({"oidc_role_claim": "groups"}, "OIDC_ROLES"),
-        ({"oidc_role_claim": "groups", "oidc_roles": {"a": "king"}}, "oidc_roles"),
+        ({"oidc_role_claim": "groups", "oidc_roles": {"a": "king"}}, "oidc-roles"),
     ],
 )
 def test_half_a_setting_is_refused_with_what_is_missing(given: dict[str, Any], words: str) -> None:
