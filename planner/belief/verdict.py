@@ -71,7 +71,7 @@ def verdict(
     elif not wedges_meet(area, _towards(supporting, spread)):
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
-        reasons.append(_error_reason(belief, mean, rule))
+        reasons.append(_error_reason(belief, mean, spread, rule))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against, tuple((w.leg, w.said) for w in ways))
 
 
@@ -136,10 +136,10 @@ def _beyond(belief: GridBelief, at: Estimate, error: float) -> float:
     return 1.0 - mass_within(belief, at.x, at.y, FAR_ERRORS * error)
 
 
-def _error_reason(belief: GridBelief, mean: Estimate, rule: LocalizationRule) -> NotYetReason:
-    """Whether the mean distance is too large, or the tail alone."""
+def _error_reason(belief: GridBelief, mean: Estimate, spread: Estimate, rule: LocalizationRule) -> NotYetReason:
+    """Whether the mean distance is too large, or the tail alone. spread: the same with the error that is stated."""
     if mean.expected_rmse >= rule.threshold:
-        return ExpectedErrorTooLarge(mean.expected_rmse, rule.threshold)
+        return ExpectedErrorTooLarge(spread.expected_rmse, rule.threshold)
     beyond = _beyond(belief, mean, rule.threshold)
     return ErrorMayBeFarLarger(100.0 * beyond, 100.0 * MOST_BEYOND, FAR_ERRORS * rule.threshold)
 

@@ -102,14 +102,14 @@ class BearingMissesArea:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedErrorTooLarge:
-    """expected_error_m: mean distance of the emitter from the estimate, mu (3.58)."""
+    """expected_error_m: as it is stated (planner.belief.verdict.stated)."""
 
     expected_error_m: float
     threshold_m: float
     code: Literal["expected_error_too_large"] = "expected_error_too_large"
 
     english: ClassVar[Words] = Words(
-        "The emitter is {expected_error_m:1} from the estimate on average; that must fall below {threshold_m:1}.",
+        "The expected error is {expected_error_m:1}; it must fall below {threshold_m:1}.",
         "Take another bearing.",
     )
 

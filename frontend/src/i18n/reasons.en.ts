@@ -75,7 +75,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Check the area, the antenna and the place of the bearing.",
   },
   expected_error_too_large: {
-    text: "The emitter is {expected_error_m:1} from the estimate on average; that must fall below {threshold_m:1}.",
+    text: "The expected error is {expected_error_m:1}; it must fall below {threshold_m:1}.",
     remedy: "Take another bearing.",
   },
   error_may_be_far_larger: {

@@ -3297,7 +3297,7 @@ export interface components {
             /** @default  */
             reason: string;
         };
-        /** @description expected_error_m: mean distance of the emitter from the estimate, mu (3.58). */
+        /** @description expected_error_m: as it is stated (planner.belief.verdict.stated). */
         ExpectedErrorTooLarge: {
             expected_error_m: number;
             threshold_m: number;

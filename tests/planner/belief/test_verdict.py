@@ -143,6 +143,14 @@ def test_a_far_tail_is_stated_and_stops_no_claim_while_it_lies_within_three_thre
     assert verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.01)).localized
 
 
+def test_an_error_that_is_too_large_is_named_as_it_is_stated():
+    answer = verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.25))
+    (reason,) = answer.reasons
+    assert answer.estimate is not None
+    assert reason == ExpectedErrorTooLarge(answer.estimate.expected_rmse, 10.0)
+    assert answer.estimate.expected_rmse == pytest.approx(20.0, abs=1.0), "the mean distance is 15 m"
+
+
 def test_a_bearing_that_supports_by_another_peak_does_not_disagree():
     """Its main peak is a reflection: where that points no emitter is looked for, nor is the claim held up."""
     towards = float(np.arctan2(TARGET[1] - 60.0, TARGET[0] - 200.0))

@@ -77,7 +77,7 @@ export const planner = {
     remedy: "Noch eine Peilung nehmen, am besten von der anderen Seite.",
   },
   expected_error_too_large: {
-    text: "Der Sender ist im Mittel {expected_error_m:1} vom Schätzort entfernt; das muss unter {threshold_m:1} fallen.",
+    text: "Der erwartete Fehler ist {expected_error_m:1}; er muss unter {threshold_m:1} fallen.",
     remedy: "Noch eine Peilung nehmen.",
   },
 
