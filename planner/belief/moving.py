@@ -132,14 +132,6 @@ def where_it_may_be(belief: MovingBelief) -> Region:
     return (np.array([*corners, (x_max + reach, y_max + reach), (x_min - reach, y_max + reach)]),)
 
 
-def turned_meanwhile(belief: MovingBelief, seconds: float, x: float, y: float) -> float:
-    """Standard deviation, rad, of how far the emitter moves across the line of sight from (x, y) in that time."""
-    mass, (cx, cy) = belief.density, belief.centres()
-    mean_x, mean_y = float(mass.sum(axis=0) @ cx), float(mass.sum(axis=1) @ cy)
-    distance = max(float(np.hypot(mean_x - x, mean_y - y)), 1.0)
-    return float(np.sqrt(belief.assumed.movement.variance(seconds))) / distance
-
-
 def _as_moving(grid: GridBelief, before: GridBelief, assumed: Assumed, **more: object) -> MovingBelief:
     same = {one.name: getattr(grid, one.name) for one in fields(GridBelief)}
     return MovingBelief(**same, before=before, assumed=assumed, **more)  # type: ignore[arg-type]
