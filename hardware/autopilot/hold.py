@@ -2,7 +2,7 @@
 
 PX4 holds at a place that it reckons ahead while it still flies. It comes to rest metres beside that place and then
 creeps there, so a second order to stay follows as soon as it is slow. While it brakes it turns its nose to that place,
-at up to 70 degrees a second and the whole way round from a swing's far side, so the nose is told to stay where it is.
+at up to 70 degrees a second, from a swing all the way round, so the nose is ordered to stay where it is.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ STOP_REACH = 0.25
 CREEPS_M = 2.2
 """So near to that stop point it is all but at rest, and needs some ten seconds for the rest of the way."""
 FACES_ITS_STOP_M_S = 2.5
-"""Until it brakes to this it turns its nose to its stop point, unless it is told of a yaw."""
+"""Until it has braked to this it turns its nose to its stop point, unless it was given a yaw."""
 REPOSITION_KEPT = 0.5
 """Seconds for which a reposition that came in another mode is carried out when HOLD is entered (PX4's loiter.cpp)."""
 
