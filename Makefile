@@ -75,7 +75,7 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory build kernel
 	$(call step,5/7,unit tests,nine minutes)
 	@$(MAKE) --no-print-directory unit
-	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,eight minutes)
+	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,seven minutes)
 	@$(MAKE) --no-print-directory system
 	$(call step,7/7,what a user does on the page; in Chromium,eighteen minutes)
 	@$(MAKE) --no-print-directory stories
