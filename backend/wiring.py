@@ -113,7 +113,10 @@ def compile_beliefs() -> None:
 async def _then_beliefs(warming: asyncio.Task[None]) -> None:
     """What a flight believes is compiled while the server answers already."""
     await asyncio.gather(warming, return_exceptions=True)
-    await asyncio.to_thread(compile_beliefs)
+    try:
+        await asyncio.to_thread(compile_beliefs)
+    except Exception:
+        log.exception("beliefs are not compiled: the first of each kind will be in flight")
 
 
 def _receiver(

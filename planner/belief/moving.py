@@ -184,7 +184,7 @@ def _spread_out(before: GridBelief, movement: Movement, seconds: float) -> tuple
 
 
 def _coarser(grid: GridBelief, times: float) -> GridBelief:
-    """The same mass in cells so many times as large, rounded up: a single one, where that is larger than the grid."""
+    """The same mass in larger cells. times: how much larger, rounded up; beyond the whole grid, one cell is left."""
     step = int(np.ceil(times))
     if step <= 1:
         return grid
