@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from backend.cli.field_missions import CRAFT_ID, HOME, FieldStudy
+from backend.cli.field_missions import CRAFT_ID, FieldStudy
 from backend.events import CraftSource
-from backend.search.localization import localization
 from backend.search.planner_bearings import source_name
 from backend.search.source_priors import learned_errors, unknown_errors
 from planner.belief.joint import JointBelief
@@ -40,4 +37,4 @@ def taught(study: FieldStudy, flights: int) -> FieldStudy:
 def _knowing(study: FieldStudy, prior: ErrorPrior, flights: int) -> FieldStudy:
     errors = learned_errors(prior, flights, CRAFT_ID, study.options.antenna)
     spec = study.spec.model_copy(update={"sensor": study.spec.sensor.model_copy(update={"learned": errors})})
-    return replace(study, spec=spec, task=localization(spec, HOME), first=None)
+    return FieldStudy.of(study.options, spec)

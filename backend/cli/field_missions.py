@@ -155,9 +155,9 @@ class FieldStudy:
     """Where missions take their first bearing: what is known before it is the same in all."""
 
     @classmethod
-    def of(cls, options: FieldOptions) -> FieldStudy:
-        """What all missions of the row have in common."""
-        spec = mission_of(options)
+    def of(cls, options: FieldOptions, spec: MissionSpec | None = None) -> FieldStudy:
+        """What all missions of the row have in common. spec: instead of the first mission's of the craft."""
+        spec = spec or mission_of(options)
         pattern = antenna_pattern(options.antenna)
         return cls(
             options, spec, localization(spec, HOME), pattern, SparseDirectionFinder(heading_sigma_deg=HEADING_SIGMA_DEG)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from itertools import product
 from typing import Any, cast, get_args
 
@@ -15,7 +16,9 @@ from backend.cli.field_lessons import taught
 from backend.cli.field_missions import AS_FLOWN, PLANNERS, FieldMission, FieldOptions, FieldStudy, Turns
 from backend.cli.field_summary import FieldSummary, summary
 from backend.simulation.field_world import Antenna
+from backend.spec import MissionSpec
 from planner.study.errors import StudyError
+from planner.study.spread import spread
 
 REMARK_EVERY = 20
 COLUMNS = (
@@ -62,9 +65,11 @@ class FieldSetting:
     flights: int
 
 
-def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, json_: bool) -> None:
-    """Flies and prints the rows. seed: of the first mission. Raises StudyError for what
-    cannot be flown."""
+def field_rows(
+    ways: FieldWays, setting: FieldSetting, runs: int, seed: int, workers: int, scheduler: str | None, json_: bool
+) -> None:
+    """Flies and prints the rows. seed: of the first mission. workers, scheduler: as in `spread`. Raises StudyError for
+    what cannot be flown."""
     if not 5.0 <= setting.turn_rate_deg_s <= 90.0:
         raise StudyError(f"--turn-rate must be 5 to 90 degrees a second, got {setting.turn_rate_deg_s:g}")
     for option, given_deg in (("sd", setting.compass_sd_deg), ("bias", setting.compass_deg)):
@@ -96,6 +101,8 @@ def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, jso
             ),
             runs,
             seed,
+            workers,
+            scheduler,
         )
         for planner, turns, listens in ways.rows()
     ]
@@ -108,14 +115,29 @@ def field_rows(ways: FieldWays, setting: FieldSetting, runs: int, seed: int, jso
         typer.echo(" | ".join(_cells(row)))
 
 
-def _row(options: FieldOptions, runs: int, seed: int) -> FieldSummary:
-    study = taught(FieldStudy.of(options), options.flights)
+def _row(options: FieldOptions, runs: int, seed: int, workers: int, scheduler: str | None) -> FieldSummary:
+    spec = taught(FieldStudy.of(options), options.flights).spec
     flown: list[FieldMission] = []
-    for number in range(seed, seed + runs):
-        flown.append(study.fly(number))
+    for (mission,) in spread(
+        partial(_fly, options, spec.model_dump_json()),
+        [[number] for number in range(seed, seed + runs)],
+        workers,
+        scheduler,
+    ):
+        flown.append(mission)
         if len(flown) % REMARK_EVERY == 0 and len(flown) < runs:
             remark(f"{options.planner}, {options.turns}, {options.listens}: {len(flown)} of {runs} missions")
-    return summary(options, flown)
+    return summary(options, sorted(flown, key=lambda mission: mission.seed))
+
+
+def _fly(options: FieldOptions, spec: str, numbers: list[int]) -> list[FieldMission]:
+    study = _prepared(options, spec)
+    return [study.fly(number) for number in numbers]
+
+
+@lru_cache(maxsize=1)
+def _prepared(options: FieldOptions, spec: str) -> FieldStudy:
+    return FieldStudy.of(options, MissionSpec.model_validate_json(spec))
 
 
 def _cells(row: FieldSummary) -> tuple[str, ...]:

@@ -28,6 +28,18 @@ app = typer.Typer(
 
 FIELD_WORLD = "field-world"
 FIELD_OPTIONS = ("listens", "turns", "turn_rate", "compass_sd", "compass_bias", "antenna", "flights")
+CELL_OPTIONS = (
+    "config",
+    "selection",
+    "sampling",
+    "budget",
+    "actions",
+    "estimator",
+    "base_policy",
+    "measurement_time",
+    "results",
+)
+"""Of all scenarios but that."""
 DEFAULT_DIRECTORY = Path("study-results")
 
 Directory = Annotated[
@@ -121,10 +133,12 @@ def run(
     Example: crossfix study run --scenario 2 --planner base --planner entpp --config medium --runs 1000
     """
     if scenario is not None and FIELD_WORLD in scenario:
+        if foreign := [name for name in CELL_OPTIONS if _is_given(context, name)]:
+            _refuse(f"--{foreign[0].replace('_', '-')} means nothing to {FIELD_WORLD}: leave it out", json_)
         try:
             ways = FieldWays(planner or ["crossfix"], turns or (), listens or ())
             setting = FieldSetting(turn_rate, compass_sd, compass_bias, antenna, flights)
-            _field_world(scenario, ways, setting, runs, seed, json_)
+            field_rows(ways, setting, runs, _field_seed(scenario, runs, workers, seed), workers, scheduler, json_)
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)
         return
@@ -204,15 +218,16 @@ def _is_given(context: typer.Context, name: str) -> bool:
     return source is not None and source.name == "COMMANDLINE"
 
 
-def _field_world(
-    scenario: list[str], ways: FieldWays, setting: FieldSetting, runs: int, seed: list[int] | None, json_: bool
-) -> None:
+def _field_seed(scenario: list[str], runs: int, workers: int, seed: list[int] | None) -> int:
+    """Of the first mission."""
     seeds = seed or [1]
     if len(scenario) > 1 or len(seeds) > 1:
         raise StudyError("field-world is flown by itself, from one --seed on: give --scenario and --seed once")
-    if runs < 1 or seeds[0] < 0:
-        raise StudyError(f"--runs must be 1 or more and --seed 0 or more, got {runs} and {seeds[0]}")
-    field_rows(ways, setting, runs, seeds[0], json_)
+    if runs < 1 or workers < 1 or seeds[0] < 0:
+        raise StudyError(
+            f"--runs and --workers must be 1 or more and --seed 0 or more, got {runs}, {workers} and {seeds[0]}"
+        )
+    return seeds[0]
 
 
 def _refuse(error: object, json_: bool) -> NoReturn:

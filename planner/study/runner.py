@@ -1,14 +1,11 @@
-"""Flies the missions of a cell: here, in several processes, or on a Dask cluster; resumes where it was interrupted."""
+"""Flies the missions of a cell, and resumes where it was interrupted."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import lru_cache, partial
-from multiprocessing import get_context
 from pathlib import Path
-from typing import Any, cast
 
 import pandas as pd
 
@@ -17,6 +14,7 @@ from planner.study.cell import Cell
 from planner.study.errors import StudyError
 from planner.study.mission import Mission, Opening, fly, opening
 from planner.study.scenarios import Scenario
+from planner.study.spread import spread
 from planner.study.store import Results
 
 BLOCK_SECONDS = 2.0
@@ -93,35 +91,4 @@ def _flown(cell: Cell, missing: list[int], workers: int, scheduler: str | None) 
     blocks = [rest[k : k + size] for k in range(0, len(rest), size)]
     if not blocks:
         return
-    if scheduler is not None:
-        yield from _on_dask(cell, blocks, scheduler)
-    elif workers == 1:
-        for block in blocks:
-            yield fly_block(cell, block)
-    else:
-        # Spawned, not forked: the kernels' thread pools do not survive a fork.
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-            jobs = [pool.submit(fly_block, cell, block) for block in blocks]
-            try:
-                for job in as_completed(jobs):
-                    yield job.result()
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _on_dask(cell: Cell, blocks: list[list[int]], scheduler: str) -> Iterator[list[Mission]]:
-    try:
-        from distributed import Client
-        from distributed import as_completed as completed
-    except ImportError as error:
-        raise StudyError("--scheduler needs Dask: install crossfix[study]") from error
-    try:
-        client: Any = Client(scheduler, timeout=10)  # Dask has no types
-    except (OSError, ValueError) as error:
-        raise StudyError(f"no Dask scheduler answers at {scheduler}: {error}") from error
-    with client:
-        if not client.scheduler_info()["workers"]:
-            raise StudyError(f"the Dask scheduler at {scheduler} has no workers: start `dask worker {scheduler}`")
-        jobs: list[Any] = client.map(partial(fly_block, cell), blocks, pure=False)
-        for job in cast(Iterator[Any], completed(jobs)):
-            yield job.result()
+    yield from spread(partial(fly_block, cell), blocks, workers, scheduler)

@@ -13,6 +13,7 @@ from backend.cli.main import app
 from planner.study.errors import StudyError
 
 
+@pytest.mark.long
 def test_flights_with_a_right_compass_teach_that_it_is_right_and_change_what_is_flown() -> None:
     study = FieldStudy.of(FieldOptions(compass_deg=0.0))
     after = taught(study, 5)
@@ -33,6 +34,6 @@ def test_bearings_that_are_taken_to_be_independent_teach_nothing() -> None:
 
 def test_the_command_flies_after_flights_and_says_so() -> None:
     said = CliRunner().invoke(
-        app, ["study", "run", "--scenario", "field-world", "--runs", "1", "--flights", "2", "--json"]
+        app, ["study", "run", "--scenario", "field-world", "--runs", "1", "--flights", "2", "--workers", "1", "--json"]
     )
     assert json.loads(said.stdout)["flights"] == 2

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from field_flights import FLOWN
+from narrowing import a
 from typer.testing import CliRunner
 
 from backend.api.suggestion import suggested_mission
@@ -141,11 +142,30 @@ def test_a_row_without_a_claim_says_nothing_of_claims():
 
 
 def test_the_command_flies_a_row_a_planner():
-    found = run("--planner", "fisher", "--planner", "random_walk", "--runs", "1", "--seed", "5", "--json")
+    found = run(
+        "--planner", "fisher", "--planner", "random_walk", "--runs", "1", "--seed", "5", "--workers", "1", "--json"
+    )
     assert found.exit_code == 0, found.output
     rows = json.loads(found.stdout)
     assert [row["planner"] for row in rows] == ["fisher", "random_walk"]
     assert all(row["missions"] == 1 and row["time_s"] > 0 for row in rows)
+
+
+@pytest.mark.slow
+def test_a_row_is_the_same_here_in_processes_and_on_a_dask_cluster():
+    from distributed import LocalCluster
+
+    asked = ("--planner", "random_walk", "--runs", "3", "--seed", "5", "--json")
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0"
+    ) as cluster:
+        told = [
+            run(*asked, "--scheduler", a(LocalCluster, cluster).scheduler_address),
+            run(*asked, "--workers", "2"),
+            run(*asked, "--workers", "1"),
+        ]
+    assert [one.exit_code for one in told] == [0, 0, 0], told[0].output
+    assert json.loads(told[0].stdout) == json.loads(told[1].stdout) == json.loads(told[2].stdout)
 
 
 @pytest.mark.parametrize(
@@ -155,6 +175,9 @@ def test_the_command_flies_a_row_a_planner():
         (("--scenario", "2"), "by itself"),
         (("--seed", "1", "--seed", "2"), "by itself"),
         (("--runs", "0"), "--runs"),
+        (("--workers", "0"), "--workers"),
+        (("--config", "slow"), "--config means nothing to field-world"),
+        (("--base-policy", "fisher"), "--base-policy means nothing"),
         (("--turn-rate", "1"), "--turn-rate"),
         (("--turns", "half"), "--turns"),
         (("--listens", "never"), "--listens"),
