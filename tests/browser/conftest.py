@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from screen import OpenScreen, Screen
+from screen import FEW_FRAMES, OpenScreen, Screen
 from served import Server, started, url_of
 
 SPEEDUP = 3.0
@@ -92,7 +92,13 @@ def open_screen(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Op
     contexts: list[BrowserContext] = []
     faults: list[str] = []
 
-    def make(server: Server, path: str = "", settings: dict[str, Any] | None = None, **options: Any) -> Screen:
+    def make(
+        server: Server,
+        path: str = "",
+        settings: dict[str, Any] | None = None,
+        every_frame: bool = False,
+        **options: Any,
+    ) -> Screen:
         wanted: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}} | options
         context = browser.new_context(**wanted)
         contexts.append(context)
@@ -100,6 +106,8 @@ def open_screen(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Op
         context.add_init_script(
             f"if (!localStorage.getItem('crossfix.settings')) localStorage.setItem('crossfix.settings', {stored!r})"
         )
+        if not every_frame:
+            context.add_init_script(FEW_FRAMES)
         page: Page = context.new_page()
         page.set_default_timeout(30_000)
         page.on("pageerror", lambda error: faults.append(str(error)))

@@ -14,6 +14,12 @@ expect.set_options(timeout=60_000)
 AIM_MAP = "[data-testid=aim-map][aria-busy=false]"
 """The map for one thumb, once it shows a search: before that it takes no taps."""
 
+FEW_FRAMES = """
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 250);
+window.cancelAnimationFrame = clearTimeout;
+"""
+"""For stories: four frames a second. Without a graphics card each takes 34 ms of a core, however small the page is."""
+
 AUTOMATIC = ("taking_off", "planning", "flying", "measuring")
 
 

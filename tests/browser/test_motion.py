@@ -91,11 +91,12 @@ def moves(screen: Screen, heard: Heard) -> str:
     return "" if drawn <= told + LATE else f"{drawn} frames were asked for, and the server told {told} things"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", ["laptop", "tablet", "phone"])
 def test_a_screen_at_rest_stays_as_it_is(server: Server, open_screen: OpenScreen, size: str) -> None:
     width, height = SIZES[size]
     flown = stored(server, "demo-px4-open")
-    screen = open_screen(server, viewport={"width": width, "height": height})
+    screen = open_screen(server, viewport={"width": width, "height": height}, every_frame=True)
     page = screen.page
     page.add_init_script(COUNT_FRAMES)
     heard = Heard(page)
@@ -122,7 +123,7 @@ VEHICLE = """() => {
 def test_who_asks_for_less_motion_sees_the_map_jump(
     server: Server, open_screen: OpenScreen, wish: str, glides: bool
 ) -> None:
-    screen = open_screen(server, f"#/mission/{stored(server, 'demo-px4-open')}", reduced_motion=wish)
+    screen = open_screen(server, f"#/mission/{stored(server, 'demo-px4-open')}", reduced_motion=wish, every_frame=True)
     page = screen.page
     page.clock.install()  # so that a busy machine does not leave the pictures between out
     page.reload()
@@ -157,7 +158,9 @@ setInterval(() => {
 
 def test_the_map_of_a_phone_stays_as_high_when_telemetry_comes_late(server: Server, open_screen: OpenScreen) -> None:
     width, height = SIZES["phone"]
-    screen = open_screen(server, f"#/mission/{server.draft()}", viewport={"width": width, "height": height})
+    screen = open_screen(
+        server, f"#/mission/{server.draft()}", viewport={"width": width, "height": height}, every_frame=True
+    )
     screen.map_ready()
     expect(screen.page.locator(".indicator.fresh")).to_have_count(5)
     screen.page.wait_for_timeout(1000)

@@ -18,7 +18,7 @@ from conftest import SETTINGS, serving
 from legible import wrong
 from playwright.sync_api import Browser, FloatRect, Page, expect
 from radio_link import RadioLink, radio_link
-from screen import Screen
+from screen import FEW_FRAMES, Screen
 from served import Server
 
 from tests.browser.sweep import HELD, SIZES, Shown
@@ -51,7 +51,7 @@ class Flight:
     def watch(self, **settings: object) -> Screen:
         context = self._browser.new_context(viewport={"width": 1280, "height": 800})
         stored = json.dumps(SETTINGS | settings)
-        context.add_init_script(f"localStorage.setItem('crossfix.settings', {stored!r});{SPIES}")
+        context.add_init_script(f"localStorage.setItem('crossfix.settings', {stored!r});{SPIES}{FEW_FRAMES}")
         page: Page = context.new_page()
         page.set_default_timeout(30_000)
         url = f"http://127.0.0.1:{self.link.port}/"
