@@ -31,7 +31,7 @@ from backend.store.spool import Spool
 sys.path.insert(0, str(Path(__file__).parent / "doubles"))  # not tests/ itself: it would hide the packages
 sys.path.append(str(Path(__file__).parents[1]))  # for `from tests.reasons import ...`
 
-FOLDERS = {"browser": ("browser",), "system": ("system", "fuzz/test_http.py", "fuzz/test_live.py")}
+FOLDERS = {"browser": ("browser",), "system": ("system", "fuzz/test_live.py")}
 """Where `make stories` and `make system` look for their tests, and where `make unit` looks for none."""
 
 LONGEST = (

@@ -12,6 +12,7 @@ PATTERN = load_pattern(SMALL_YAGI)
 FINDER = SparseDirectionFinder(heading_sigma_deg=HEADING_SIGMA_DEG)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fault", [f for f in FAULTS if f.seen], ids=lambda fault: fault.name)
 def test_claims_are_true_under_every_fault_that_can_be_noticed(fault: Fault) -> None:
     outcomes = [fly(seed, fault, PATTERN, FINDER) for seed in range(101, 113)]

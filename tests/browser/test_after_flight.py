@@ -70,6 +70,7 @@ def row(screen: Screen, mission_id: str) -> Locator:
     return screen.page.locator(f"[data-testid=mission-row][data-mission='{mission_id}']")
 
 
+@pytest.mark.long
 def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next_mission(
     server: Server, open_screen: OpenScreen
 ) -> None:
@@ -234,6 +235,7 @@ def test_a_report_of_eight_tags_draws_those_of_which_anything_is_known(
     assert sheet.count(b"/Type /Page\n") <= 4
 
 
+@pytest.mark.long
 def test_before_the_first_bearing_no_place_is_said_and_a_pointer_scrolls_nothing_away(
     server: Server, open_screen: OpenScreen
 ) -> None:
@@ -294,6 +296,7 @@ def test_an_emitter_that_was_not_found_counts_and_a_found_place_replaces_it(
     assert [e["how"] for e in server.events(mission_id) if e["kind"] == "truth_noted"] == ["map", "typed", "map"]
 
 
+@pytest.mark.long
 def test_bearings_that_were_taken_elsewhere_are_brought_in_from_a_file(
     server: Server, open_screen: OpenScreen, tmp_path: Path
 ) -> None:

@@ -12,7 +12,7 @@ from backend.events import Recorded
 from tests.browser.stock import stored
 from tests.browser.test_after_flight import bring_in, checked
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(480)]
 
 
 def test_it_says_that_it_loads_and_then_that_there_is_nothing(server: Server, open_screen: OpenScreen) -> None:

@@ -14,7 +14,7 @@ from served import Server
 from backend.events import BeliefUpdated, Recorded, SafetyVetoed
 from backend.reasons import carried
 from backend.reasons.safety import PilotControls
-from tests.browser.by_thumb import HELD_IN_HAND, card, slide, touched
+from tests.browser.by_thumb import EVERY_HAND, card, slide, touched
 from tests.browser.sweep import SIZES, TOO_WIDE
 from tests.browser.test_after_flight import FLOWN, bring_in, checked, row
 
@@ -32,7 +32,8 @@ def vetoed(flown: list[Recorded]) -> list[Recorded]:
     return [record.model_copy(update={"seq": seq}) for seq, record in enumerate(told, start=1)]
 
 
-@pytest.mark.parametrize("size", HELD_IN_HAND)
+@pytest.mark.long
+@pytest.mark.parametrize("size", EVERY_HAND)
 def test_a_flight_is_looked_for_labelled_and_told_about_with_a_thumb(
     server: Server, open_screen: OpenScreen, size: str, tmp_path: Path
 ) -> None:
@@ -84,7 +85,8 @@ def test_a_flight_is_looked_for_labelled_and_told_about_with_a_thumb(
     page.screenshot(path=tmp_path / "told.png")
 
 
-@pytest.mark.parametrize("size", HELD_IN_HAND)
+@pytest.mark.long
+@pytest.mark.parametrize("size", EVERY_HAND)
 def test_a_flight_is_replayed_supposed_compared_and_printed_with_a_thumb(
     server: Server, open_screen: OpenScreen, size: str, tmp_path: Path
 ) -> None:
@@ -142,7 +144,7 @@ def test_a_flight_is_replayed_supposed_compared_and_printed_with_a_thumb(
     assert not screen.evaluate(TOO_WIDE)
 
 
-@pytest.mark.parametrize("size", HELD_IN_HAND)
+@pytest.mark.parametrize("size", EVERY_HAND)
 def test_a_flight_is_held_sent_elsewhere_and_resumed_with_a_thumb(
     server: Server, open_screen: OpenScreen, size: str
 ) -> None:

@@ -14,7 +14,7 @@ from served import Server
 
 from tests.browser.sweep import SIZES
 
-pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(300)]
 
 EXAMPLE = "#/mission/example"
 

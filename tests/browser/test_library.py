@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 from screen import Screen
 from served import Server
 
-pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(240)]
 
 PAGE = 100
 MISSIONS = 130

@@ -22,7 +22,7 @@ from relief import geotiff
 from screen import OpenScreen, Screen
 from served import Server
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.long]
 
 GREEN = (30, 160, 60)
 HOME_TILE = {zoom: (int((7.2046 + 180) / 360 * 2**zoom), int(0.336426 * 2**zoom)) for zoom in (13, 14, 15, 16)}

@@ -17,7 +17,7 @@ from served import Server
 from tests.browser.stock import stored
 from tests.browser.sweep import SIZES
 
-pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(480)]
 
 COUNT_FRAMES = """
 window.framesAsked = 0;
@@ -91,7 +91,6 @@ def moves(screen: Screen, heard: Heard) -> str:
     return "" if drawn <= told + LATE else f"{drawn} frames were asked for, and the server told {told} things"
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("size", ["laptop", "tablet", "phone"])
 def test_a_screen_at_rest_stays_as_it_is(server: Server, open_screen: OpenScreen, size: str) -> None:
     width, height = SIZES[size]

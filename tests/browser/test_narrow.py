@@ -11,7 +11,7 @@ from backend.events import Event, PlanChosen
 from tests.browser.sweep import SIZES
 from tests.browser.test_after_flight import bring_in, checked
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(480)]
 
 
 def box(part: Locator) -> FloatRect:

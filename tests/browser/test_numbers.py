@@ -16,7 +16,7 @@ from hardware.frame import LocalFrame
 from hardware.readings import Place
 from tests.browser.stock import stored
 
-pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(240)]
 
 JOURNAL = "orders"
 """The operator refused its first place and moved its fourth: the bearings were taken at 2, 3, 5, 6 and 7."""

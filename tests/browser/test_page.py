@@ -170,6 +170,7 @@ def test_the_checklist_is_legible(server: Server, open_screen: OpenScreen) -> No
     Legible(screen).check("preflight")
 
 
+@pytest.mark.long
 def test_the_flight_and_its_sheets_are_legible(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server)
     screen.fly(server.draft(expected_rmse_m=0.1, maximum_bearings=200))
@@ -274,6 +275,7 @@ def test_a_flight_whose_facts_cannot_be_stored_says_so_and_is_held_all_the_same(
         assert len(held) == 1, "it waited in memory, and is stored once"
 
 
+@pytest.mark.long
 def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, f"#/mission/{server.draft()}")
     keyboard = screen.page.keyboard

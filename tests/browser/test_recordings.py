@@ -18,7 +18,7 @@ from served import Server
 from hardware.direction_finding.pattern_file import pattern_json
 from hardware.sdr.sigmf_file import DATA, META
 
-pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(240)]
 
 PLACE = "50.6240, 7.2040"
 

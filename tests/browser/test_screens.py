@@ -10,7 +10,7 @@ from served import Server
 from tests.browser.stock import brought, search_of_tags
 from tests.browser.sweep import HELD, SIZES, Shown, screens
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(300)]
 
 NOT_OURS = {"scene"}
 """What viser draws."""

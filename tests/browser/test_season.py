@@ -54,6 +54,7 @@ def brought_in(screen: Screen, folder: Path) -> None:
     screen.page.wait_for_url(f"**#/mission/{ID}")
 
 
+@pytest.mark.long
 def test_a_mission_from_elsewhere_is_found_compared_and_printed(
     server: Server, open_screen: OpenScreen, tmp_path: Path
 ) -> None:
@@ -128,6 +129,7 @@ def test_a_mission_from_elsewhere_is_found_compared_and_printed(
         assert sheet.count(b"/Type /Page\n") == 1, "a flight of three bearings is one sheet"
 
 
+@pytest.mark.long
 def test_variants_are_kept_by_name_and_the_original_stays_as_it_was_flown(
     server: Server, open_screen: OpenScreen, tmp_path: Path
 ) -> None:
@@ -213,6 +215,7 @@ def said_of(server: Server, open_screen: OpenScreen, folder: Path) -> list[dict[
     return server.events(ID)
 
 
+@pytest.mark.long
 def test_a_bundle_opened_in_another_installation_is_the_same_mission(
     server: Server, open_screen: OpenScreen, tmp_path: Path
 ) -> None:

@@ -14,7 +14,7 @@ from playwright.sync_api import Locator, expect
 from screen import OpenScreen, Screen
 from served import Server
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(480)]
 
 GONE_WITHIN_MS = 180_000
 """The server looks for what is to go a minute after its start."""

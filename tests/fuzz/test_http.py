@@ -273,7 +273,7 @@ def leave_nothing_flying(data_dir: Path) -> None:
             orders.sendto(b'{"do": "stop"}', ("127.0.0.1", json.loads(register.read_text())["control_port"]))
 
 
-@pytest.mark.system
+@pytest.mark.long
 @pytest.mark.timeout(120 + A_ROUND)
 @pytest.mark.parametrize("number", range(-(-REQUESTS // A_ROUND)))
 def test_no_request_makes_the_server_stumble(number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

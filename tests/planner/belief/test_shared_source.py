@@ -80,6 +80,7 @@ def each_by_node(belief, source, grid):
     return found
 
 
+@pytest.mark.long
 def test_places_of_all_emitters_and_the_errors_multiplied_out_are_what_each_emitter_is_told():
     rng = np.random.default_rng(3)
     hand = Bearing(310.0, 310.0, -2.2, 0.2, source="ada")
