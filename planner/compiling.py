@@ -1,15 +1,11 @@
-"""How the kernels are compiled: numba's flags, a cache that sees every change, and a start without linear algebra."""
+"""How the kernels are compiled: numba's flags, and a cache that sees every change."""
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Callable
-from types import ModuleType
 from typing import Any, Protocol, TypeVar, cast
 
-from numba import njit
-
+from planner.numba_loading import numba
 from planner.sources import digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -27,18 +23,18 @@ _FLAGS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _FASTMATH = {"reassoc", "contract", "arcp", "nsz"}
 # numba's types leave out _nrt and forceinline.
 
-entry = cast(Compiler, njit(fastmath=_FASTMATH, cache=True, **_FLAGS))
+entry = cast(Compiler, numba.njit(fastmath=_FASTMATH, cache=True, **_FLAGS))
 """For what Python calls; nothing else is kept on disk, since the machine code of all it calls is part of its own."""
-allocating = cast(Compiler, njit(fastmath=_FASTMATH, **_FLAGS))
+allocating = cast(Compiler, numba.njit(fastmath=_FASTMATH, **_FLAGS))
 """For what makes arrays."""
-jit = cast(Compiler, njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS))  # pyright: ignore[reportCallIssue]
+jit = cast(Compiler, numba.njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS))  # pyright: ignore[reportCallIssue]
 """Counts no references to arrays: numba's atomic counters took a sixth of the time, and threads fought for them."""
-inlined = cast(Compiler, njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS))  # pyright: ignore[reportCallIssue]
+inlined = cast(Compiler, numba.njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS))  # pyright: ignore[reportCallIssue]
 """For functions that take `rules` or `work`: these are passed by value, some hundred words a call."""
 
-exact = cast(Compiler, njit(nogil=True))
+exact = cast(Compiler, numba.njit(nogil=True))
 """In the order that is written: geometry that a rounding could turn round."""
-exact_entry = cast(Compiler, njit(cache=True, nogil=True))
+exact_entry = cast(Compiler, numba.njit(cache=True, nogil=True))
 """As `exact`, for what Python calls."""
 
 COMPILED_IN = (
@@ -57,22 +53,3 @@ COMPILED_IN = (
 """Code or constants of these files are in the machine code."""
 SOURCES = int(digest(COMPILED_IN)[:15], 16)
 """For entry points to close over: numba's cache looks at their own file only, and at the values they close over."""
-
-
-def _load_numba_without_blas() -> None:
-    """Before its first call numba imports all of scipy.linalg, a quarter of a start, to see whether there is a BLAS.
-
-    An empty module answers here, for that moment only: what does need BLAS imports it when it is compiled and when it
-    is called (docs/decisions/0015).
-    """
-    blas = "scipy.linalg.cython_blas"
-    if blas in sys.modules or "numba.np.arraymath" in sys.modules:
-        return
-    sys.modules[blas] = ModuleType(blas)
-    try:
-        importlib.import_module("numba.np.arraymath")
-    finally:
-        del sys.modules[blas]
-
-
-_load_numba_without_blas()
