@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from types import ModuleType
 from typing import Any, cast
 
+from planner.loading import load
+
 BLAS = "scipy.linalg.cython_blas"
 LOOKED_FOR = ("cffi", "coverage", "yaml")
 """What numba does without where they are not installed: C functions in kernels, kernels' lines in a report on coverage,
@@ -30,7 +32,7 @@ def _standing_in(modules: Mapping[str, ModuleType | None]) -> Generator[None]:
 
 def _loaded() -> Any:
     with _standing_in(dict.fromkeys(LOOKED_FOR)):
-        numba = importlib.import_module("numba")
+        numba = load("numba")
         importlib.import_module("numba.core.typing.cffi_utils")
     if "numba.np.arraymath" not in sys.modules:
         with _standing_in({BLAS: ModuleType(BLAS)}):
