@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import importlib
 import logging
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -13,6 +12,7 @@ import typer
 from backend.cli.edge import print_json, remark, stop
 from backend.logs import configure
 from backend.settings import Settings, settings_of
+from planner.loading import load
 from planner.reason import ReasonedError
 
 if TYPE_CHECKING:  # it loads seconds of libraries, and a vehicle left in flight is to be held first
@@ -100,7 +100,7 @@ async def _serve(settings: Settings, json_: bool) -> None:
     from backend.first_hold import hold_what_flies
 
     first = await hold_what_flies(settings)
-    server = await asyncio.to_thread(importlib.import_module, "backend.cli.running")
+    server = await asyncio.to_thread(load, "backend.cli.running")
     async with server.running_server(settings, leave_flying=True, first=first) as running:
         server.stop_on_signals(running, remark)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
