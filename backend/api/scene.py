@@ -24,7 +24,6 @@ from backend.api.services import Services
 from backend.events import Recorded
 from backend.ports import TrackPoint
 from backend.reasons.request import SceneSilent, TooManyScenes
-from backend.scene.server import SUBPROTOCOL
 from backend.scene.views import SceneViews, TooManyViews
 from backend.terrain import Terrain
 from backend.wire.scene import SceneRequest, SceneView
@@ -166,8 +165,9 @@ def _policy(request: Request) -> str:
 @pages.websocket("/scene/{view_id}")
 async def scene_socket(websocket: WebSocket, view_id: ViewId, views: SceneViewsDep, principal: PrincipalDep) -> None:
     """viser's websocket, passed through in both directions."""
-    if SUBPROTOCOL not in websocket.scope["subprotocols"]:
-        await websocket.close(1002, f"the page is not of this server's version ({SUBPROTOCOL}): load it again")
+    server = await views.server()
+    if server.subprotocol not in websocket.scope["subprotocols"]:
+        await websocket.close(1002, f"the page is not of this server's version ({server.subprotocol}): load it again")
         return
     if views.view(view_id) is None:
         try:
@@ -175,7 +175,6 @@ async def scene_socket(websocket: WebSocket, view_id: ViewId, views: SceneViewsD
         except TooManyViews:
             await websocket.close(1013, "too many 3D views are open")
             return
-    server = await views.server()
     port = server.port
     with socket.socket() as own:
         own.setblocking(False)
@@ -187,12 +186,12 @@ async def scene_socket(websocket: WebSocket, view_id: ViewId, views: SceneViewsD
             async with websockets.connect(
                 f"ws://127.0.0.1:{port}/",
                 sock=own,
-                subprotocols=[websockets.Subprotocol(SUBPROTOCOL)],
+                subprotocols=[websockets.Subprotocol(server.subprotocol)],
                 compression=None,
                 max_size=None,
                 proxy=None,
             ) as upstream:
-                await websocket.accept(SUBPROTOCOL)
+                await websocket.accept(server.subprotocol)
                 await _pass_through(websocket, upstream)
         finally:
             server.forget(local_port)

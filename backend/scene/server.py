@@ -16,6 +16,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+import httpx
 import viser
 from viser import _messages
 
@@ -38,12 +39,19 @@ class SceneServer:
         with _quiet():
             self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self.port = self._server.get_port()
+        self.subprotocol = SUBPROTOCOL
         connections = self._server._websock_server
         # a viewer could otherwise ask viser to open a tunnel to a public relay
         connections.unregister_handler(_messages.ShareUrlRequest)
         connections.on_client_connect(self._let_in)
         self._server.on_client_connect(self._on_open)
         connections.on_client_disconnect(self._on_close)
+
+    def page(self) -> bytes:
+        """viser's client page, as it serves it. Blocks: call it in a thread."""
+        reply = httpx.get(f"http://127.0.0.1:{self.port}/", trust_env=False)
+        reply.raise_for_status()
+        return reply.content
 
     def announce(self, local_port: int, view_id: str) -> None:
         """The next connection from this port of 127.0.0.1 is a window of the view."""

@@ -11,15 +11,17 @@ import asyncio
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
-
-import httpx
-import viser
+from typing import TYPE_CHECKING
 
 from backend.scene.composer import Composer, Take
 from backend.scene.drawer import Drawer
-from backend.scene.server import SceneServer
 from backend.scene.sources import SceneSource
 from backend.wire.scene import SceneRequest, SceneView
+
+if TYPE_CHECKING:  # loaded with the first view
+    import viser
+
+    from backend.scene.server import Closed, Opened, SceneServer
 
 log = logging.getLogger("crossfix.scene")
 
@@ -66,17 +68,14 @@ class SceneViews:
             if self._server is None:
                 loop = asyncio.get_running_loop()
                 opened, closed = _called_on(loop, self._opened), _called_on(loop, self._closed)
-                self._server = await asyncio.to_thread(SceneServer, opened, closed)
+                self._server = await asyncio.to_thread(_start, opened, closed)
             return self._server
 
     async def page(self) -> bytes:
         """viser's client page, as its server gives it."""
         server = await self.server()
         if self._page is None:
-            async with httpx.AsyncClient(trust_env=False) as client:
-                reply = await client.get(f"http://127.0.0.1:{server.port}/")
-            reply.raise_for_status()
-            self._page = reply.content
+            self._page = await asyncio.to_thread(server.page)
         return self._page
 
     async def close(self) -> None:
@@ -201,6 +200,13 @@ class SceneViews:
                 await asyncio.to_thread(window.clear)
             else:
                 await asyncio.to_thread(window.draw, take.scene)
+
+
+def _start(opened: Opened, closed: Closed) -> SceneServer:
+    """Blocks: viser and httpx take an eighth of a second to load, which only a server pays whose 3D view is opened."""
+    from backend.scene.server import SceneServer
+
+    return SceneServer(opened, closed)
 
 
 def _called_on(loop: asyncio.AbstractEventLoop, function: Callable[..., None]) -> Callable[..., None]:
