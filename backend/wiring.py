@@ -25,7 +25,7 @@ from backend.maps.terrain_folder import TerrainFolder
 from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.reasons.datagrams import NoSearchFlies
-from backend.search.first_beliefs import fold_first_beliefs
+from backend.search.first_beliefs import fold_first_beliefs, in_a_strip
 from backend.search.forecast import preview
 from backend.search.localization import localization
 from backend.search.reported import ReportedBearing, on_our_clock
@@ -72,7 +72,7 @@ def _warm_up() -> None:
     objects takes 0.2 s, in which nobody's abort is read.
     """
     home = Place(lat=0.0, lon=0.0)
-    spec = suggested_mission(home)
+    spec = in_a_strip(suggested_mission(home), home)
     preview(localization(spec, home), home, threads=2)
     gc.freeze()
 
@@ -106,7 +106,7 @@ def _warming() -> asyncio.Task[None]:
 def compile_beliefs() -> None:
     """Every kind of belief that a flight may ask for."""
     home = Place(lat=0.0, lon=0.0)
-    fold_first_beliefs(suggested_mission(home), home)
+    fold_first_beliefs(in_a_strip(suggested_mission(home), home), home)
     gc.freeze()
 
 

@@ -13,7 +13,7 @@ import facts, ground, legs
 from numba.core.registry import CPUDispatcher
 from backend.api.suggestion import SENSOR, suggested_mission
 from backend.search.emitter import EmitterState
-from backend.search.first_beliefs import fold_first_beliefs
+from backend.search.first_beliefs import fold_first_beliefs, in_a_strip
 from backend.search.localization import localization
 from backend.search.state import SearchState
 from backend.search.task import search_task
@@ -26,7 +26,7 @@ def compiled():
     return {(one.py_func.__name__, signature) for one in found.values() for signature in one.signatures}
 
 place = Place(0.0, 0.0)
-fold_first_beliefs(suggested_mission(place), place)
+fold_first_beliefs(in_a_strip(suggested_mission(place), place), place)
 before = compiled()
 taken = facts.bearing(1).model_copy(update={"place": ground.HOME, "taken_at_s": 1e9})
 emitters = [EmitterSpec(), EmitterSpec(emitter_id="emitter-2", frequency_hz=869.5e6)]
