@@ -8,6 +8,7 @@ acknowledges the last number received without a gap; only then does the agent fo
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import cache
 from typing import Annotated, Any, Literal, TypeVar, cast
 
 from pydantic import (
@@ -107,6 +108,7 @@ WireReason = Annotated[Annotated[HardwareReason, Field(discriminator="code")], W
 class Status(Message):
     """How the agent is. waiting: samples not yet acknowledged; lost: dropped since the spool was full."""
 
+    model_config = ConfigDict(defer_build=True)  # see agent_messages
     type: Literal["status"] = "status"
     receiver: WireReason
     receiver_ok: bool
@@ -206,13 +208,18 @@ class Refused(Message):
 
 ServerMessage = Annotated[Welcome | Ack | Resend | Tune | Pong | Refused, Field(discriminator="type")]
 
-_FROM_AGENT: TypeAdapter[Hello | Samples | Status | Ping] = TypeAdapter(AgentMessage)
 _FROM_SERVER: TypeAdapter[Welcome | Ack | Resend | Tune | Pong | Refused] = TypeAdapter(ServerMessage)
+
+
+@cache
+def agent_messages() -> TypeAdapter[Hello | Samples | Status | Ping]:
+    """Some eighty reasons are in it, a fiftieth of a server's start: only one that expects a payload makes it."""
+    return TypeAdapter(AgentMessage)
 
 
 def parse_from_agent(text: str | bytes) -> Hello | Samples | Status | Ping:
     """Raises PayloadProtocolError."""
-    return _parse(_FROM_AGENT, text)
+    return _parse(agent_messages(), text)
 
 
 def parse_from_server(text: str | bytes) -> Welcome | Ack | Resend | Tune | Pong | Refused:

@@ -30,6 +30,7 @@ from hardware.payload.messages import (
     Tune,
     Welcome,
     WireChannel,
+    agent_messages,
     parse_from_agent,
 )
 from hardware.readings import Channel, PowerSample
@@ -96,6 +97,7 @@ class PayloadHub:
     def __init__(self, tokens: tuple[str, ...], now: Callable[[], float] = time.time) -> None:
         if any(len(token) < SHORTEST_TOKEN for token in tokens):
             raise ValueError(f"a payload token must have at least {SHORTEST_TOKEN} characters; make a longer one")
+        agent_messages()  # now, not while an agent waits and a mission flies
         self._tokens = tokens
         self.now = now
         self.agents: dict[str, AgentState] = {}
