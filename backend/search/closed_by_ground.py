@@ -10,7 +10,6 @@ import math
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter, minimum_filter
 from shapely.geometry.base import BaseGeometry
 
 from backend.search.ground import LATERAL_TOLERANCE_M, VERTICAL_TOLERANCE_M, Ground
@@ -34,6 +33,8 @@ def closed_by_ground(
     """
     if ground.terrain is None or fence.is_empty:
         return None
+    from scipy.ndimage import maximum_filter, minimum_filter  # loaded beside the server's start, not before its page
+
     west, south = np.minimum(fence.bounds[:2], origin)
     east, north = np.maximum(fence.bounds[2:], origin)
     cell = max(FINEST_CELL_M, (east - west) / MOST_CELLS, (north - south) / MOST_CELLS)

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.sweep import BINS
@@ -147,6 +146,8 @@ def _inner(
 
 def _solve(gram: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Columns half a degree apart are nearly parallel; least squares takes over where Cholesky gives up."""
+    from scipy.linalg import LinAlgError, cho_factor, cho_solve  # as in refine.py: only sweeps need it
+
     try:
         return cho_solve(cho_factor(gram), right)
     except LinAlgError:
