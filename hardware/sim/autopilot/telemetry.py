@@ -9,12 +9,14 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from pymavlink.dialects.v20 import ardupilotmega
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.firmware import Firmware
 
 Message = mavlink.MAVLink_message
+
+EKF_STATUS_REPORT_ID = 193
+"""Of ArduPilot's own dialect."""
 
 GRAVITY = 9.81
 
@@ -198,8 +200,10 @@ def estimator_status(firmware: Firmware) -> Message:
     return mavlink.MAVLink_estimator_status_message(at_us, flags, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.8, 1.2)
 
 
-def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:
+def ekf_status_report(firmware: Firmware) -> Any:
     """ArduPilot's word on its position estimate; MAVSDK asks for it as part of "health"."""
+    from pymavlink.dialects.v20 import ardupilotmega  # a fifth of a PX4's start, which never says it
+
     good = _estimator_flags(firmware)
     return ardupilotmega.MAVLink_ekf_status_report_message(good, 0.1, 0.1, 0.1, 0.1, 0.0)
 
@@ -229,7 +233,7 @@ def builders(flavour: str) -> dict[int, Callable[[Firmware], Any]]:
     """Message id -> builder: what this flavour can send when asked."""
     if flavour == "ardupilot":
         return _COMMON | {
-            ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report,
+            EKF_STATUS_REPORT_ID: ekf_status_report,
             mavlink.MAVLINK_MSG_ID_RC_CHANNELS: rc_channels,
         }
     return _COMMON | {
