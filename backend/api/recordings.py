@@ -36,8 +36,7 @@ from hardware.reasons.iq_recording import NotIq
 from hardware.reasons.renamed import renamed
 from hardware.reasons.table import FileUnreadable, RemarksNotListed
 from hardware.sdr.pulses import PulseSetting
-from hardware.sdr.rotation import IqReading, read_sweeps
-from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, is_sigmf
+from hardware.sdr.sigmf_names import ARCHIVE, DATA, META, is_sigmf
 from hardware.sdr.spectrum import SpectrumError
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
@@ -201,6 +200,8 @@ def _pulses(form: RecordingForm) -> PulseSetting | None:
 def _parsed(
     names: dict[Path, str], tag: str | None, frequency_hz: float | None, pulses: PulseSetting | None
 ) -> Recording:
+    from hardware.sdr.rotation import IqReading, read_sweeps  # sigmf comes with it: this process reads files, no other
+
     recording = next(iter(names))
     headings = next((path for path in names if path.name == "headings.csv"), None)
     bearings = None if is_sigmf(recording) or headings is not None else read_bearing_file(recording, tag)

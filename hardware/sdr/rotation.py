@@ -29,7 +29,8 @@ from hardware.reasons.iq_recording import (
 from hardware.reasons.union import RecordingReason
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.rotation_headings import annotated_headings, apart, headings_from
-from hardware.sdr.sigmf_file import SigmfRecording, is_sigmf, load_sigmf
+from hardware.sdr.sigmf_file import SigmfRecording, load_sigmf
+from hardware.sdr.sigmf_names import is_sigmf
 from hardware.sdr.spectrum import SpectrumError, ToneMeter, ToneSetting, averaged_spectrum
 
 BLOCK_S = 0.5

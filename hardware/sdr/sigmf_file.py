@@ -26,8 +26,8 @@ from hardware.reasons.iq_recording import (
     SigmfFileMissing,
 )
 from hardware.reasons.table import FileUnreadable
+from hardware.sdr.sigmf_names import DATA, META
 
-META, DATA, ARCHIVE = ".sigmf-meta", ".sigmf-data", ".sigmf"
 AZIMUTH_KEY: Final = "antenna:azimuth_angle"
 """Of the antenna extension to SigMF: direction of the main beam from north, degrees clockwise."""
 
@@ -76,11 +76,6 @@ class SigmfRecording:
         known = [s for s in self.segments if s.first <= sample and s.at_s is not None]
         first, at_s = (known[-1].first, known[-1].at_s or 0.0) if known else (0, self.start_s)
         return at_s + (sample - first) / self.sample_rate_hz
-
-
-def is_sigmf(path: Path | str) -> bool:
-    """Whether the name is that of a SigMF file (meta, data or archive)."""
-    return Path(path).suffix.lower() in (META, DATA, ARCHIVE)
 
 
 def load_sigmf(path: Path | str) -> SigmfRecording:

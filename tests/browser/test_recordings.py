@@ -16,7 +16,7 @@ from screen import OpenScreen, Screen
 from served import Server
 
 from hardware.direction_finding.pattern_file import pattern_json
-from hardware.sdr.sigmf_file import DATA, META
+from hardware.sdr.sigmf_names import DATA, META
 
 pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(240)]
 

@@ -17,7 +17,8 @@ from backend.store.engine import engine_for_once
 from backend.store.iq_folder import IqFolder
 from backend.store.retention import bury, thin_iq
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
-from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, load_sigmf
+from hardware.sdr.sigmf_file import load_sigmf
+from hardware.sdr.sigmf_names import ARCHIVE, DATA, META
 
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.21, 50.6], [7.21, 50.61], [7.2, 50.61], [7.2, 50.6]]]}
 
