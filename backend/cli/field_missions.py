@@ -211,7 +211,7 @@ class FieldStudy:
                 continue
             turned_at.append(place)
             for attempt in range(1, 2 + self.spec.sensor.maximum_retakes):
-                plan = self._turn(task, belief, measured, here, attempt)
+                plan = self._turn(measured, here, attempt)
                 swing_s = 0.0 if plan.begin_deg is None else _apart(heading, plan.begin_deg) / rate
                 found, turned, looks = self.measured(field, here, sweeps, plan)
                 spent_s = turned / rate + (looks - 1) * LOOK_S + SETTLE_S
@@ -311,23 +311,20 @@ class FieldStudy:
             return None
         middle = (0.5 * (here[0] + place[0]), 0.5 * (here[1] + place[1]))
         expected, offset_deg = expected_here(task, belief, measured, middle), self.pattern.offset_to_nose_deg
-        begin_deg = self._turn(task, belief, measured, place, 1).begin_deg
+        begin_deg = self._turn(measured, place, 1).begin_deg
         facing_deg = None if begin_deg is None else (begin_deg - offset_deg) % 360.0
         plan = swing_plan(expected, offset_deg, self.options.turn_rate_deg_s, facing_deg)
         return Swinging(plan, lambda _: math.inf)
 
-    def _turn(
-        self,
-        task: Localization,
-        belief: GridBelief,
-        measured: Sequence[BearingMeasured],
-        here: tuple[float, float],
-        attempt: int,
-    ) -> TurnPlan:
+    def _turn(self, measured: Sequence[BearingMeasured], here: tuple[float, float], attempt: int) -> TurnPlan:
+        """By what turns told alone, as in flight, where nobody waits for what the leg told."""
         because = must_be_whole(self.spec, measured, attempt)
         if not self.spec.sensor.turns_in_sectors or because is not None:
             return whole_turn(because or "first")
-        return planned_turn(expected_here(task, belief, measured, here))
+        task, bearings = self.task, self.task.planner_bearings(measured)
+        if task.belief(bearings) is None:
+            return whole_turn("unsure")
+        return planned_turn(expected_here(task, task.planning_belief(bearings), measured, here))
 
     def measured(
         self, field: Field, here: tuple[float, float], number: int, plan: TurnPlan
