@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.bent_lobes import BentLobes
+from hardware.direction_finding.beside_lobe import beside_lobe_sigma_deg
 from hardware.direction_finding.circle import Besides, SweepLikelihood, sweep_likelihood
 from hardware.direction_finding.many_echoes import SPREAD_REACH_DEG, ManyEchoes, echo_field, many_echoes
 from hardware.direction_finding.other_antenna import (
@@ -127,7 +128,8 @@ class SparseDirectionFinder:
 
     Added in quadrature to the sweep's own sigma, since no sweep can show it: heading_sigma_deg, what the vehicle's
     heading is uncertain by, the pattern's mismatch_sigma_deg, what its antenna may point beside by,
-    atan(drift / 100 m), what the uncertain place makes of it, and what was not heard of the circle.
+    atan(drift / 100 m), what the uncertain place makes of it, what was not heard of the circle, and what echoes that no
+    explanation shows bend (beside_lobe.py).
     """
 
     minimum_quality: float = MINIMUM_QUALITY
@@ -186,7 +188,8 @@ class SparseDirectionFinder:
         in_gap = binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg
         if in_gap:
             own_sigma = max(own_sigma, likelihood.spread_deg(bearing))
-        own_sigma = math.hypot(own_sigma, unheard)
+        unshown = math.hypot(unheard, beside_lobe_sigma_deg(binned, refined.fitted_db, bearing, curve.beam_deg))
+        own_sigma = math.hypot(own_sigma, unshown)
         sigma = math.hypot(own_sigma, self.heading_sigma_deg, pattern.mismatch_sigma_deg, place_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)
         peaks = tuple(
@@ -214,7 +217,7 @@ class SparseDirectionFinder:
             fitted_db=refined.fitted_db,
             snr_db=None if noise_db is None else refined.peak_db - noise_db,
             remarks=remarks_on(pattern, explained.of_other),
-            likelihood=_widened(likelihood, math.hypot(place_sigma_deg, unheard)).packed(),
+            likelihood=_widened(likelihood, math.hypot(place_sigma_deg, unshown)).packed(),
         )
 
 
@@ -272,7 +275,7 @@ def _of_all(refined: Refined, explained: _Explained) -> tuple[float, float]:
 
 
 def _widened(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:
-    """Convolved with what the uncertain place and the unheard directions make of it."""
+    """Convolved with what the uncertain place, the unheard directions and echoes make of it."""
     return likelihood if sigma_deg < 0.5 else likelihood.blurred(sigma_deg)
 
 
