@@ -44,8 +44,8 @@ COLUMNS = (
 
 
 def widening(held: Mapping[float, Sequence[bool]], wanted: float = WANTED) -> float:
-    """The factor at which C95 holds the truth so often. held: of each factor's claims whether it did. inf: at none,
-    since it holds no more often the wider the wedge is.
+    """The factor at which C95 holds the truth so often, no less than the narrowest that was flown. held: of each
+    factor's claims whether it did. inf: at none, since it holds no more often the wider the wedge is.
 
     Maximum likelihood of P(held) = 1 / (1 + exp(-a - b log f)) by Newton's method.
     """
@@ -59,7 +59,7 @@ def widening(held: Mapping[float, Sequence[bool]], wanted: float = WANTED) -> fl
         found = found + np.linalg.solve(curvature, rows.T @ (true - p) - ridge * found)
     if found[1] <= 0.0:
         return math.inf
-    return float(np.exp((math.log(wanted / (1.0 - wanted)) - found[0]) / found[1]))
+    return max(float(np.exp((math.log(wanted / (1.0 - wanted)) - found[0]) / found[1])), min(held))
 
 
 def row(setting: Setting, factor: float, missions: Sequence[FieldMission]) -> tuple[Cell, ...]:

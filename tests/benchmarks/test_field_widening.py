@@ -24,6 +24,10 @@ def test_the_factor_is_that_of_the_curve_that_the_claims_were_made_by() -> None:
     assert found == pytest.approx(math.exp((math.log(19.0) - 0.5) / 3.0), rel=0.02)
 
 
+def test_a_wedge_that_is_true_as_it_is_is_not_made_narrower() -> None:
+    assert field_widening.widening({1.0: claims(0.97), 1.5: claims(0.99)}) == 1.0
+
+
 def test_no_factor_is_found_where_wider_is_no_truer() -> None:
     assert field_widening.widening({1.0: claims(0.9), 2.0: claims(0.6)}) == math.inf
 
