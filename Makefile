@@ -73,11 +73,11 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory check
 	$(call step,4/7,the page and the planner's machine code,a minute the first time)
 	@$(MAKE) --no-print-directory build kernel
-	$(call step,5/7,unit tests,nine minutes)
+	$(call step,5/7,unit tests,eight minutes)
 	@$(MAKE) --no-print-directory unit
-	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,seven minutes)
+	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,six minutes)
 	@$(MAKE) --no-print-directory system
-	$(call step,7/7,what a user does on the page; in Chromium,eighteen minutes)
+	$(call step,7/7,what a user does on the page; in Chromium,eight minutes)
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
