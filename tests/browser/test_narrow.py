@@ -41,7 +41,7 @@ def test_each_value_of_a_bearing_stands_in_one_line_on_a_phone(server: Server, o
 
 
 def in_hours(event: Event) -> Event:
-    """Every candidate takes four hours longer, and is told ten minutes less sharply."""
+    """Every candidate takes four hours longer, and its standard error is ten minutes more."""
     if not isinstance(event, PlanChosen):
         return event
     longer = [
