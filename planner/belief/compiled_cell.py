@@ -57,7 +57,7 @@ def reached(x, y, known, past):
             node = int(np.floor(past[j]))
             if node + reach + 2 > 0 and node - reach < count:
                 low, high = min(low, max(0, node - reach)), max(high, min(count, node + reach + 2))
-    if len(known.on_way.worth) > 0:
+    if len(known.on_way.heard.worth) > 0:
         return 0, count
     return (low, high) if low < high else (0, 0)
 
@@ -134,7 +134,7 @@ def of_cell(x, y, known, past, low, high, apart, table, density, sums):
         share = known.shares[1, r % rates]
         apart[r] *= share
         times(table[r, low:high], share)
-    if len(known.on_way.worth) > 0:
+    if len(known.on_way.heard.worth) > 0:
         apart[:] = 0.0
         way, scale, rate = known.on_way, known.scale, known.rate
         log += weigh_stretches(x, y, way, known.bias, known.spacing, scale, rate, sums, density, table)

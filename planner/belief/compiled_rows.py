@@ -42,6 +42,19 @@ def mixed(row, ratio, share, rest):
 
 
 @jit
+def summed(weight, first, second, log_variance, rest, sums):
+    """To sums (4, n): of one reading, its weight, weighted residual, its square, and logarithm of its variance, where
+    the residual is rest - G. first, second: of the weight times G, and times its square."""
+    whole, residuals, squares, volume = sums[0], sums[1], sums[2], sums[3]
+    for n in range(len(weight)):
+        along = rest * weight[n]
+        whole[n] += weight[n]
+        residuals[n] += along - first[n]
+        squares[n] += rest * (along - 2.0 * first[n]) + second[n]
+        volume[n] += log_variance[n]
+
+
+@jit
 def copied(row, from_row):
     """Into `row`."""
     for b in range(len(row)):

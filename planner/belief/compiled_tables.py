@@ -13,10 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from planner import sweep_likelihood
+from planner.belief.compiled_on_the_way import OnTheWay, on_the_way
 from planner.belief.evidence import Sightings
 from planner.belief.source_errors import Nodes
 from planner.compiling import SOURCES, allocating, entry
-from planner.on_the_way import Heard, Stretch, heard
+from planner.on_the_way import Stretch, heard
 from planner.types import FloatArray, IntArray
 
 RESCALED_EVERY = 8
@@ -35,7 +36,7 @@ class Prepared(NamedTuple):
     """
 
     seen: Sightings
-    on_way: Heard
+    on_way: OnTheWay
     bias: FloatArray
     spacing: float
     scale: FloatArray
@@ -67,7 +68,7 @@ def prepared(seen: Sightings, nodes: Nodes, weight: FloatArray, stretches: Seque
     )
     return Prepared(
         seen,
-        heard(stretches, nodes.scale),
+        on_the_way(heard(stretches, nodes.scale), len(nodes.bias), nodes.spacing),
         nodes.bias,
         nodes.spacing,
         nodes.scale,
