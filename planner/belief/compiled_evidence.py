@@ -13,7 +13,7 @@ import numpy as np
 
 from planner.belief.compiled_cell import of_cell, reached, scratch, whole_of
 from planner.belief.compiled_rows import added, added_beside, dot, total
-from planner.belief.compiled_tables import prepared
+from planner.belief.compiled_tables import Prepared, prepared
 from planner.belief.evidence import Evidence, SharedOut, Sightings
 from planner.belief.source_errors import Nodes
 from planner.compiling import SOURCES, entry
@@ -28,46 +28,79 @@ WORTH_A_THREAD = 200
 
 
 class Weigher:
-    """evidence.Weigher of a source that took these bearings and heard these stretches."""
+    """evidence.Weigher of a source that took these bearings and heard these stretches.
+
+    Where stretches make a place dear, what it says of the errors is kept with it: sharing it out weighs no place again.
+    """
 
     def __init__(self, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()) -> None:
         self._nodes = nodes
         self._known = prepared(seen, nodes, nodes.weight, stretches)
-        self._threads = THREADS if stretches else 1
+        self._kept: _Kept | None = _Kept() if stretches else None
 
     def log(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """As there."""
-        x, y, found = _plain(x), _plain(y), np.empty(len(x))
-        parts = min(self._threads, len(x) // WORTH_A_THREAD)
-        in_parts(len(x), parts, lambda part: _log_evidence(x[part], y[part], self._known, found[part]))
+        x, y = _plain(x), _plain(y)
+        if self._kept is not None:
+            return self._kept.keep(x, y, _told(x, y, self._known, THREADS)).log
+        found = np.empty(len(x))
+        _log_evidence(x, y, self._known, found)
         return found
 
     def shared_out(self, x: FloatArray, y: FloatArray, mass: FloatArray) -> SharedOut:
         """As there."""
-        x, y, mass, mean = _plain(x), _plain(y), _plain(mass), np.empty(len(x))
-        found = dict[int, FloatArray]()
-
-        def work(part: slice) -> None:
-            found[part.start] = np.zeros_like(self._known.prior)
-            _shared_out_over(x[part], y[part], mass[part], self._known, found[part.start], mean[part])
-
-        in_parts(len(x), min(self._threads, len(x) // WORTH_A_THREAD), work)
-        table = np.sum([found[start] for start in sorted(found)], axis=0).reshape(self._nodes.weight.shape)
+        x, y, mass = _plain(x), _plain(y), _plain(mass)
+        if self._kept is not None:
+            told = self._kept.of(x, y) or _told(x, y, self._known, THREADS)
+            return SharedOut(mass @ told.bias, mass @ told.scale, mass @ told.rate, told.bias @ self._nodes.bias)
+        found, mean = np.zeros_like(self._known.prior), np.empty(len(x))
+        _shared_out_over(x, y, mass, self._known, found, mean)
+        table = found.reshape(self._nodes.weight.shape)
         return SharedOut(table.sum(axis=(0, 1)), table.sum(axis=(1, 2)), table.sum(axis=(0, 2)), mean)
+
+
+class _Kept:
+    """What was told of places, by their coordinates."""
+
+    def __init__(self) -> None:
+        self._places: dict[tuple[float, float], int] = {}
+        self._told = list[Evidence]()
+
+    def keep(self, x: FloatArray, y: FloatArray, told: Evidence) -> Evidence:
+        """x, y (c,) m. Returns `told`."""
+        first = sum(len(one.log) for one in self._told)
+        self._places.update(zip(zip(x.tolist(), y.tolist(), strict=True), range(first, first + len(x)), strict=True))
+        self._told.append(told)
+        return told
+
+    def of(self, x: FloatArray, y: FloatArray) -> Evidence | None:
+        """Of the places (c,) x, y; None where one of them is new."""
+        rows = [self._places.get(place, -1) for place in zip(x.tolist(), y.tolist(), strict=True)]
+        if -1 in rows:
+            return None
+        return Evidence(*(np.concatenate(some)[rows] for some in zip(*self._told, strict=True)))
 
 
 def evidence(
     x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()
 ) -> Evidence:
     """See evidence.evidence."""
+    return _told(_plain(x), _plain(y), prepared(seen, nodes, nodes.weight, stretches), 1)
+
+
+def _told(x: FloatArray, y: FloatArray, known: Prepared, threads: int) -> Evidence:
     cells = len(x)
     out = Evidence(
         np.empty(cells),
-        np.empty((cells, len(nodes.bias))),
-        np.empty((cells, len(nodes.scale))),
-        np.empty((cells, len(nodes.rate))),
+        np.empty((cells, len(known.bias))),
+        np.empty((cells, len(known.scale))),
+        np.empty((cells, len(known.rate))),
     )
-    _evidence(_plain(x), _plain(y), prepared(seen, nodes, nodes.weight, stretches), out)
+
+    def work(part: slice) -> None:
+        _evidence(x[part], y[part], known, Evidence(*(told[part] for told in out)))
+
+    in_parts(cells, min(threads, cells // WORTH_A_THREAD), work)
     return out
 
 
