@@ -147,6 +147,8 @@ def run(
         option = given[0].replace("_", "-")
         _refuse(f"--{option} is of the field world: add --scenario {FIELD_WORLD}, or leave it out", json_)
     study = _modules()
+    if unknown := [name for name in scenario or () if name not in study.scenarios]:
+        _refuse(f"there is no scenario {unknown[0]!r}: choose one of {', '.join(study.scenarios)}", json_)
     try:
         cells = [
             study.Cell(
@@ -243,7 +245,9 @@ class _Study:
     def __init__(self) -> None:
         from planner.study import cell, runner, table
         from planner.study.report import report
+        from planner.study.scenarios import SCENARIOS
 
+        self.scenarios = (*SCENARIOS, FIELD_WORLD)
         self.Cell, self.run_cell, self.table, self.report = cell.Cell, runner.run_cell, table, report
 
 

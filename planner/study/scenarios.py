@@ -50,11 +50,11 @@ def scenario(
     likelihood: CellLikelihood = "centre",
 ) -> Scenario:
     """A scenario by name, its configuration and what departs from it. StudyError for names that do not exist."""
-    if name not in _SCENARIOS:
-        raise StudyError(f"there is no scenario {name!r}: choose one of {', '.join(_SCENARIOS)}")
+    if name not in SCENARIOS:
+        raise StudyError(f"there is no scenario {name!r}: choose one of {', '.join(SCENARIOS)}")
     if config not in MEASUREMENT_TIMES:
         raise StudyError(f"there is no configuration {config!r}: choose one of {', '.join(MEASUREMENT_TIMES)}")
-    made = _SCENARIOS[name](MEASUREMENT_TIMES[config])
+    made = SCENARIOS[name](MEASUREMENT_TIMES[config])
     problem = replace(made.problem, likelihood=likelihood)
     if estimator is not None:
         problem = replace(problem, estimator=estimator)
@@ -155,4 +155,4 @@ def _field(measurement_time: float) -> Scenario:
     return Scenario("field", problem, (156.5, 10.0), target, True, lambda run: 0)
 
 
-_SCENARIOS: dict[str, Callable[[float], Scenario]] = {"1": _one, "2": _two, "3": _three, "field": _field}
+SCENARIOS: dict[str, Callable[[float], Scenario]] = {"1": _one, "2": _two, "3": _three, "field": _field}

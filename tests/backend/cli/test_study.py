@@ -33,6 +33,12 @@ def test_one_cell_prints_one_object(tmp_path):
     assert "base" in result.stderr
 
 
+def test_a_scenario_that_is_not_there_is_refused_with_all_that_are():
+    result = call("run", "--scenario", "9")
+    assert result.exit_code == 2
+    assert "there is no scenario '9': choose one of 1, 2, 3, field, field-world" in " ".join(result.stderr.split())
+
+
 def test_several_cells_print_a_list_and_a_report_reads_them(tmp_path):
     common = ("--runs", "3", "--workers", "1", "--results", tmp_path / "results", "--json")
     result = call("run", "--planner", "base", "--planner", "vander_hook", "--config", "slow", *common)
