@@ -26,10 +26,8 @@ def nets_looked_at(step: CraftStep, given: NetsUp | NetsNotTaken) -> None:
 
 def _same(said: Reason, because: Reason) -> bool:
     """Also where a vehicle that hovers is a little further in or out."""
-    match said, because:
-        case OutsideFence(what=before, beyond_m=then_m), OutsideFence(what=after, beyond_m=now_m):
-            return before == after and abs(now_m - then_m) < MOVED_M
-        case NoWayHome(distance_m=then_m), NoWayHome(distance_m=now_m):
-            return abs(now_m - then_m) < MOVED_M
-        case _:
-            return said == because
+    if isinstance(said, OutsideFence) and isinstance(because, OutsideFence):
+        return said.what == because.what and abs(because.beyond_m - said.beyond_m) < MOVED_M
+    if isinstance(said, NoWayHome) and isinstance(because, NoWayHome):
+        return abs(because.distance_m - said.distance_m) < MOVED_M
+    return said == because

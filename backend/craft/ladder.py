@@ -70,7 +70,8 @@ class Ladder:
 
     def next(self, because: Reason | None) -> Ladder:
         """The rung after this one, to be tried after its pause."""
-        return replace(self, rung=(self.rung + 1) % len(self._rungs), stage="waits", because=because or self.because)
+        because = self.because if because is None else because
+        return replace(self, rung=(self.rung + 1) % len(self._rungs), stage="waits", because=because)
 
     @property
     def _rungs(self) -> tuple[Rung, ...]:

@@ -78,7 +78,10 @@ class Display:
         own = active.state.crafts[craft.craft_id]
         refused = None
         if own.phase in ("hold", "manual"):
-            refused = resume_refusal(own, active.state.search) or next(iter(runner.objections(Resume())), None)
+            refused = resume_refusal(own, active.state.search)
+            if refused is None:
+                objections = runner.objections(Resume())
+                refused = objections[0] if objections else None
         return CraftStatus(
             craft_id=craft.craft_id,
             mission_id=active.mission_id,

@@ -53,7 +53,10 @@ def sent(asked: tuple[CraftEffect, ...]) -> list[CraftEffect]:
 
 def refusal(asked: tuple[CraftEffect, ...]) -> Reason | None:
     """Why an order was refused, None when it was carried out."""
-    return next((effect.reason for effect in asked if isinstance(effect, Refuse)), None)
+    for effect in asked:
+        if isinstance(effect, Refuse):
+            return effect.reason
+    return None
 
 
 def ordered(command: ForCraft, **more: object) -> inputs.CraftOrdered:

@@ -37,7 +37,10 @@ def facts_of(asked: tuple[SearchEffect, ...]) -> list[Event]:
 
 
 def refusal(asked: tuple[SearchEffect, ...]) -> Reason | None:
-    return next((effect.reason for effect in asked if isinstance(effect, Refuse)), None)
+    for effect in asked:
+        if isinstance(effect, Refuse):
+            return effect.reason
+    return None
 
 
 def muting(person: str, muted: bool) -> commands.MuteSource:
