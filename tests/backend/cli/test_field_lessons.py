@@ -33,7 +33,6 @@ def test_bearings_that_are_taken_to_be_independent_teach_nothing() -> None:
 
 
 def test_the_command_flies_after_flights_and_says_so() -> None:
-    said = CliRunner().invoke(
-        app, ["study", "run", "--scenario", "field-world", "--runs", "1", "--flights", "2", "--workers", "1", "--json"]
-    )
+    asked = ["study", "run", "--scenario", "field-world", "--planner", "fisher", "--runs", "1", "--flights", "2"]
+    said = CliRunner().invoke(app, [*asked, "--workers", "1", "--json"])
     assert json.loads(said.stdout)["flights"] == 2

@@ -151,21 +151,26 @@ def test_the_command_flies_a_row_a_planner():
     assert all(row["missions"] == 1 and row["time_s"] > 0 for row in rows)
 
 
-@pytest.mark.slow
-def test_a_row_is_the_same_here_in_processes_and_on_a_dask_cluster():
+THREE = ("--planner", "random_walk", "--runs", "3", "--seed", "5", "--json")
+
+
+def test_a_row_is_the_same_here_and_in_processes():
+    there, here = run(*THREE, "--workers", "2"), run(*THREE, "--workers", "1")
+    assert (there.exit_code, here.exit_code) == (0, 0), there.output
+    assert json.loads(there.stdout) == json.loads(here.stdout)
+
+
+@pytest.mark.long
+def test_a_row_is_the_same_here_and_on_a_dask_cluster():
     from distributed import LocalCluster
 
-    asked = ("--planner", "random_walk", "--runs", "3", "--seed", "5", "--json")
     with LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0"
     ) as cluster:
-        told = [
-            run(*asked, "--scheduler", a(LocalCluster, cluster).scheduler_address),
-            run(*asked, "--workers", "2"),
-            run(*asked, "--workers", "1"),
-        ]
-    assert [one.exit_code for one in told] == [0, 0, 0], told[0].output
-    assert json.loads(told[0].stdout) == json.loads(told[1].stdout) == json.loads(told[2].stdout)
+        there = run(*THREE, "--scheduler", a(LocalCluster, cluster).scheduler_address)
+    here = run(*THREE, "--workers", "1")
+    assert (there.exit_code, here.exit_code) == (0, 0), there.output
+    assert json.loads(there.stdout) == json.loads(here.stdout)
 
 
 @pytest.mark.parametrize(
