@@ -124,7 +124,7 @@ coverage: kernel ## how much of the code the unit tests run: they take longer so
 ONCE_MORE := --reruns 1 -rR
 
 system: setup-dev build kernel ## whole missions over real sockets
-	$(BIN)/pytest tests/system tests/fuzz -m system -n 3 --dist worksteal $(ONCE_MORE) --durations 8
+	$(BIN)/pytest tests/system tests/fuzz -m "system and not long" -n 3 --dist worksteal $(ONCE_MORE) --durations 8
 
 stories: setup-dev build browser kernel ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
 	$(BIN)/pytest tests/browser -m "not long" -n 3 $(BY_FILE) $(ONCE_MORE) --durations 8

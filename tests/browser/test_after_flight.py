@@ -24,7 +24,7 @@ from backend.store.entries import EventRow, to_records
 from backend.store.upgrade import FIRST_FORM
 from backend.wire.bundle import bundle
 from hardware.frame import LocalFrame
-from tests.browser.by_thumb import EVERY_SIZE, card, touched
+from tests.browser.by_thumb import EVERY_HAND, card, touched
 from tests.browser.stock import search_of_tags
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
@@ -148,6 +148,7 @@ def how_sharp(server: Server, screen: Screen) -> None:
     assert server.get("/api/calibration")["forecast_90"]["of"] == 6 * len(said)
 
 
+@pytest.mark.long
 def test_missions_are_found_by_a_rectangle_over_them(server: Server, open_screen: OpenScreen) -> None:
     here = server.draft()
     spec = server.get(f"/api/missions/{here}")["spec"]
@@ -182,6 +183,7 @@ def test_missions_are_found_by_a_rectangle_over_them(server: Server, open_screen
     expect(page.locator(".place-box")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_missions_are_found_by_date_vehicle_emitter_and_result(server: Server, open_screen: OpenScreen) -> None:
     flown = bring_in(server, checked("found-by-words", 0.0))
     spec = server.get(f"/api/missions/{server.draft()}")["spec"]
@@ -207,6 +209,7 @@ def test_missions_are_found_by_date_vehicle_emitter_and_result(server: Server, o
     expect(row(screen, flown)).to_be_visible()
 
 
+@pytest.mark.long
 def test_two_missions_are_one_report_with_an_overview(server: Server, open_screen: OpenScreen) -> None:
     first, second = (bring_in(server, checked(f"of-one-sequence-{n}", 0.0)) for n in (1, 2))
     screen = open_screen(server, f"#/report/{first}/{second}")
@@ -221,6 +224,7 @@ def test_two_missions_are_one_report_with_an_overview(server: Server, open_scree
     expect(screen.part("compare-row")).to_have_count(2)
 
 
+@pytest.mark.long
 def test_a_report_of_eight_tags_draws_those_of_which_anything_is_known(
     server: Server, open_screen: OpenScreen, tmp_path: Path
 ) -> None:
@@ -342,7 +346,7 @@ def test_bearings_that_were_taken_elsewhere_are_brought_in_from_a_file(
     assert len([e for e in server.events(mission_id) if e["kind"] == "bearing_measured"]) == 5
 
 
-@pytest.mark.parametrize("size", EVERY_SIZE)
+@pytest.mark.parametrize("size", [pytest.param("laptop", marks=pytest.mark.long), *EVERY_HAND])
 def test_our_own_bearing_files_are_brought_in_on_the_page(
     server: Server, open_screen: OpenScreen, size: str, tmp_path: Path
 ) -> None:

@@ -19,7 +19,7 @@ from served import Server
 
 from tests.browser.sweep import faults
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
+pytestmark = [pytest.mark.browser, pytest.mark.long, pytest.mark.timeout(480)]
 
 TAGS = [f"150.{number}" for number in range(1, 9)]
 PERIOD_S = 1.3
@@ -36,7 +36,6 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         yield made
 
 
-@pytest.mark.long
 def test_two_tags_at_one_frequency_are_asked_for_by_their_periods(server: Server, screen: Screen) -> None:
     screen.go(f"#/new/{server.draft({})}")
     screen.part("field-emitters-0-kind").select_option("pulsed")
@@ -55,7 +54,6 @@ def test_two_tags_at_one_frequency_are_asked_for_by_their_periods(server: Server
     screen.checked()
 
 
-@pytest.mark.long
 def test_eight_tags_are_planned_flown_found_one_by_one_and_reported(server: Server, screen: Screen) -> None:
     alone = {"bearing_errors": "independent", "shared_errors": False, "pulses_per_heading": 1}
     screen.go(f"#/new/{server.draft(alone, expected_rmse_m=12.0, minimum_crossing_angle_deg=0)}")
@@ -164,7 +162,6 @@ def found_ids(server: Server, screen: Screen) -> list[str]:
     return [one["emitter_id"] for one in server.get(f"/api/missions/{screen.mission_id}")["spec"]["emitters"]]
 
 
-@pytest.mark.long
 def test_an_animal_that_walks_is_localized_at_a_time_and_followed_on(server: Server, screen: Screen) -> None:
     server.order("battery", percent=100)
     screen.go(f"#/new/{server.draft(expected_rmse_m=30.0)}")
@@ -244,7 +241,6 @@ def upload(page: Page, path: Path, text: str) -> None:
     page.get_by_test_id("ways-upload").set_input_files(path)
 
 
-@pytest.mark.long
 def test_a_search_on_foot_is_advised_over_the_bridge_until_it_is_localized(
     server: Server, open_screen: OpenScreen, tmp_path: Path
 ) -> None:

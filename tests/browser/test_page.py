@@ -152,6 +152,7 @@ class Legible:
                     assert min(box["width"], box["height"]) >= TARGET_PX, f"{control} of {name} is too small to hit"
 
 
+@pytest.mark.long
 def test_a_refused_area_is_legible(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, f"#/mission/{server.draft()}/area")
     screen.map_ready("edit-map")
@@ -160,6 +161,7 @@ def test_a_refused_area_is_legible(server: Server, open_screen: OpenScreen) -> N
     Legible(screen).check("area")
 
 
+@pytest.mark.long
 def test_the_checklist_is_legible(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, f"#/mission/{server.draft()}")
     screen.checked()
@@ -315,6 +317,7 @@ def test_a_single_stray_key_flies_nothing(server: Server, open_screen: OpenScree
     assert screen.part("event-log").locator("[data-kind=hold_ordered], [data-kind=abort_ordered]").count() == 0
 
 
+@pytest.mark.long
 def test_the_page_speaks_german_and_remembers_it(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, EXAMPLE)
     screen.part("menu").click()

@@ -48,6 +48,7 @@ def test_an_area_comes_from_a_geojson_file(server: Server, editor: Screen, tmp_p
     assert {tuple(c) for c in corners} == {tuple(c) for c in RING}
 
 
+@pytest.mark.long
 def test_an_area_comes_from_a_kml_file(server: Server, editor: Screen, tmp_path: Path) -> None:
     text = KML.format(" ".join(f"{lon},{lat},0" for lon, lat in RING))
     editor.part("import-file").set_input_files(write(tmp_path, "meadow.kml", text))
@@ -55,6 +56,7 @@ def test_an_area_comes_from_a_kml_file(server: Server, editor: Screen, tmp_path:
     assert len(saved(server, editor)["area"]["coordinates"][0]) == 5
 
 
+@pytest.mark.long
 def test_a_fence_and_its_holes_come_from_a_qgroundcontrol_plan(server: Server, editor: Screen, tmp_path: Path) -> None:
     outer = [[50.6220, 7.2010], [50.6220, 7.2080], [50.6265, 7.2080], [50.6265, 7.2010]]
     inner = [[50.6258, 7.2020], [50.6258, 7.2030], [50.6262, 7.2030]]

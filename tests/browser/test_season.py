@@ -190,6 +190,7 @@ def everything_else_is_asked(screen: Screen, folder: Path) -> None:
     assert answered.value.json()["reason"]["code"] == "samples_not_stored", "the flight came without its powers"
 
 
+@pytest.mark.long
 def test_found_here_from_a_phone_is_in_the_calibration(server: Server, open_screen: OpenScreen, tmp_path: Path) -> None:
     estimate = next(
         e["estimate"] for e in reversed(said_of(server, open_screen, tmp_path)) if e["kind"] == "belief_updated"

@@ -51,7 +51,7 @@ async def sent(vehicle: SimulatedAutopilot, since_s: float, kinds: set[int]) -> 
     return [command for command in told["commands"] if command[1] in kinds]
 
 
-@pytest.mark.parametrize("flavour", ["px4", "ardupilot"])
+@pytest.mark.parametrize("flavour", ["px4", pytest.param("ardupilot", marks=pytest.mark.long)])
 async def test_a_mission_is_localized_without_a_turn_at_every_place(server: RunningServer, operator: Console) -> None:
     await operator.draft(**NEVER_STOP)
     await operator.ready(120)

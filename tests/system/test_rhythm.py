@@ -18,7 +18,7 @@ from backend.spec import EmitterSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
-pytestmark = [pytest.mark.system, pytest.mark.timeout(420)]
+pytestmark = [pytest.mark.system, pytest.mark.long, pytest.mark.timeout(420)]
 
 PERIODS_S = (1.3, 1.05)
 BAND_HZ = 25_000.0

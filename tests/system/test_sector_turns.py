@@ -15,7 +15,7 @@ from hardware.readings import Place
 pytestmark = pytest.mark.system
 
 
-@pytest.mark.parametrize("flavour", ["px4", "ardupilot"])
+@pytest.mark.parametrize("flavour", ["px4", pytest.param("ardupilot", marks=pytest.mark.long)])
 async def test_a_mission_is_localized_with_turns_only_as_far_as_needed(
     server: RunningServer, operator: Console
 ) -> None:
