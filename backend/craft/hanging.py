@@ -5,7 +5,6 @@ from __future__ import annotations
 from backend.craft.inputs import NetsNotTaken, NetsUp
 from backend.craft.step import CraftStep, alert, clear_alerts
 from backend.events import NetsHung
-from backend.reasons import Reason
 from backend.reasons.safety import NoWayHome, OutsideFence
 
 MOVED_M = 5.0
@@ -24,8 +23,8 @@ def nets_looked_at(step: CraftStep, given: NetsUp | NetsNotTaken) -> None:
         alert(step, "nets", "warning", given.because)
 
 
-def _same(said: Reason, because: Reason) -> bool:
-    """Also where a vehicle that hovers is a little further in or out."""
+def _same(said: object, because: object) -> bool:
+    """Two reasons, also where a vehicle that hovers is a little further in or out."""
     if isinstance(said, OutsideFence) and isinstance(because, OutsideFence):
         return said.what == because.what and abs(because.beyond_m - said.beyond_m) < MOVED_M
     if isinstance(said, NoWayHome) and isinstance(because, NoWayHome):

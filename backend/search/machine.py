@@ -293,7 +293,7 @@ def _verdict(state: SearchState, because: Reason) -> tuple[Literal["localized", 
 
 def alert(step: SearchStep, topic: Topic, level: Literal["warning", "caution", "advisory"], reason: Reason) -> None:
     """Raise an alert; one that is open on the same topic gives way to it."""
-    if any(alert.topic == topic and alert.reason == reason for alert in step.state.open_alerts):
+    if any((alert.topic, alert.reason) == (topic, reason) for alert in step.state.open_alerts):
         return
     clear_alerts(step, topic)
     alert_id = f"{topic}-{step.state.alerts_raised + 1}"

@@ -31,7 +31,7 @@ from backend.events import (
     MissionEnded,
     RecordingImported,
 )
-from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals
+from backend.reasons import NoLongerLocalized, NotLocalized, flight, refusals
 from backend.reasons.search import HeadingsAskew, Localized, LocalizedAgainst
 from backend.search.effects import SearchEffect, SearchElsewhere, UpdateBelief
 from backend.search.inputs import (
@@ -236,7 +236,7 @@ CHANGE = commands.ChangeArea(search=OTHER_AREA)
     ("stage", "reason"),
     [("draft", refusals.NotStarted()), ("ready", refusals.NotStarted()), ("ended", refusals.MissionOver())],
 )
-def test_the_area_changes_while_the_search_is_open_only(stage: Stage, reason: Reason) -> None:
+def test_the_area_changes_while_the_search_is_open_only(stage: Stage, reason: object) -> None:
     walk = SearchWalk().to(stage)
     assert refusal(walk.order(CHANGE)) == reason
     assert walk.state.spec == SPEC
