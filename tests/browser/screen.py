@@ -15,10 +15,20 @@ AIM_MAP = "[data-testid=aim-map][aria-busy=false]"
 """The map for one thumb, once it shows a search: before that it takes no taps."""
 
 FEW_FRAMES = """
-window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 250);
-window.cancelAnimationFrame = clearTimeout;
+(() => {
+  const nextFrame = window.requestAnimationFrame.bind(window), cancelled = new Set();
+  let asked = 0;
+  window.requestAnimationFrame = (draw) => {
+    const id = ++asked;
+    setTimeout(() => nextFrame((now) => cancelled.delete(id) || draw(now)), 250);
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => cancelled.add(id);
+})();
 """
-"""For stories: four frames a second. Without a graphics card each takes 34 ms of a core, however small the page is."""
+"""For stories: four frames a second at most. Without a graphics card each takes 34 ms of a core, however small the page
+is; on a slow machine more, so that each also waits for the browser's next frame: drawn by the clock alone they pile up,
+and nothing holds still enough to be clicked for half a minute."""
 
 AUTOMATIC = ("taking_off", "planning", "flying", "measuring")
 
