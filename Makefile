@@ -69,15 +69,15 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory setup-dev
 	$(call step,2/7,packages of the page,half a minute the first time)
 	@$(MAKE) --no-print-directory frontend/node_modules/.installed
-	$(call step,3/7,style; types; imports; schemas; figures; the tests of the page,four minutes)
+	$(call step,3/7,style; types; imports; schemas; figures; the tests of the page,three minutes)
 	@$(MAKE) --no-print-directory check
 	$(call step,4/7,the page and the planner's machine code,a minute the first time)
 	@$(MAKE) --no-print-directory build kernel
-	$(call step,5/7,unit tests,eight minutes)
+	$(call step,5/7,unit tests,seven minutes)
 	@$(MAKE) --no-print-directory unit
-	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,six minutes)
+	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
 	@$(MAKE) --no-print-directory system
-	$(call step,7/7,what a user does on the page; in Chromium,eight minutes)
+	$(call step,7/7,what a user does on the page; in Chromium,five minutes)
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
