@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
+.PHONY: run test coverage check check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
 
 # The tests start some two hundred servers and vehicles: where no bytecode is kept, each compiles every source again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -34,9 +34,10 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
 
+# PIP_COMPILES=--no-compile leaves it to Python to compile what is imported, a third of all: tests start sooner so.
 # Every package is compared with the hash that stands beside its version; what builds them is among them. The lists are
 # whole: pip that looks for what they need by itself may take a newer version of a package with an extra, and refuse it.
-PIP := $(BIN)/pip install --quiet --disable-pip-version-check --no-deps
+PIP := $(BIN)/pip install --quiet --disable-pip-version-check --no-deps $(PIP_COMPILES)
 
 $(VENV)/.installed: pyproject.toml setup.py requirements/run.txt | $(VENV)/bin/python
 	$(PIP) --require-hashes -r requirements/run.txt
@@ -65,19 +66,17 @@ browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
 test: ## everything CI runs
-	$(call step,1/7,Python packages into .venv,two minutes the first time)
-	@$(MAKE) --no-print-directory setup-dev
-	$(call step,2/7,packages of the page,half a minute the first time)
-	@$(MAKE) --no-print-directory frontend/node_modules/.installed
-	$(call step,3/7,style; types; imports; schemas; figures; the tests of the page,three minutes)
+	$(call step,1/6,packages of Python into .venv; those of the page,a minute the first time)
+	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse setup-dev frontend/node_modules/.installed PIP_COMPILES=--no-compile
+	$(call step,2/6,style; types; imports; schemas; figures; the tests of the page,three minutes)
 	@$(MAKE) --no-print-directory check
-	$(call step,4/7,the page and the planner's machine code,a minute the first time)
+	$(call step,3/6,the page and the planner's machine code,half a minute the first time)
 	@$(MAKE) --no-print-directory build kernel
-	$(call step,5/7,unit tests,seven minutes)
+	$(call step,4/6,unit tests,seven minutes)
 	@$(MAKE) --no-print-directory unit
-	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
+	$(call step,5/6,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
 	@$(MAKE) --no-print-directory system
-	$(call step,7/7,what a user does on the page; in Chromium,five minutes)
+	$(call step,6/6,what a user does on the page; in Chromium,five minutes)
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
@@ -101,7 +100,12 @@ check-page:
 	cd frontend && npm run --silent check
 
 kernel: setup-dev ## compiled once here, not by each test worker
+	@$(MAKE) --no-print-directory -j 2 kernel-of-plans kernel-of-beliefs
+
+kernel-of-plans:
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
+
+kernel-of-beliefs:
 	$(BIN)/python -c "from backend.wiring import compile_beliefs; compile_beliefs()"
 
 # By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
