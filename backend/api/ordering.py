@@ -8,11 +8,11 @@ from fastapi import Request
 
 from backend.api.problems import ApiProblem
 from backend.auth.access import Access
-from backend.auth.keeping import Denied
+from backend.auth.limits import too_many
 from backend.auth.principal import Principal
 from backend.commands import CommandReply, CommandRequest, CraftRequest
 from backend.permissions import COMMANDS, SAFETY, Need
-from backend.reasons.access import CallNotListed, TooManyTries
+from backend.reasons.access import CallNotListed
 
 
 def permit(access: Access, principal: Principal, request: CommandRequest | CraftRequest) -> None:
@@ -28,7 +28,7 @@ def permit(access: Access, principal: Principal, request: CommandRequest | Craft
         access.limits.command_refused(principal)
         raise ApiProblem(403, refused)
     if need is not SAFETY and (wait_s := access.limits.command_wait_s(principal)) > 0:
-        raise Denied(429, TooManyTries(wait_s))
+        raise too_many(wait_s)
 
 
 async def ordered(

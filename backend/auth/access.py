@@ -15,7 +15,7 @@ from typing import Literal
 from backend.auth.audit import AuditLog
 from backend.auth.invitations import Invitations
 from backend.auth.keeping import Denied, Keeping
-from backend.auth.limits import Limits
+from backend.auth.limits import Limits, too_many
 from backend.auth.machines import Machines
 from backend.auth.passwords import Passwords, weakness
 from backend.auth.people import People
@@ -32,7 +32,6 @@ from backend.reasons.access import (
     NoPasswordHere,
     NoPeopleHere,
     ProviderRefused,
-    TooManyTries,
     WrongNameOrPassword,
 )
 
@@ -152,7 +151,7 @@ class Access:
         person = self.people.named(name)
         wait_s = self.limits.names.wait_s(key, now_s)
         if wait_s > 0 or self._signing_in >= WAITING_SIGN_INS:
-            raise Denied(429, TooManyTries(max(wait_s, 1.0)))
+            raise too_many(max(wait_s, 1.0))
         self.limits.take_try(visit.address)
         self.limits.names.take(key, now_s)
         self._signing_in += 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -9,6 +10,11 @@ from backend.auth.buckets import Buckets, neighbourhood
 from backend.auth.keeping import Denied
 from backend.auth.principal import Principal
 from backend.reasons.access import TooManyTries
+
+
+def too_many(wait_s: float) -> Denied:
+    """Says whole seconds, never too few: whoever waits that long is let in."""
+    return Denied(429, TooManyTries(float(math.ceil(wait_s))))
 
 
 @dataclass(slots=True)
@@ -28,7 +34,7 @@ class Limits:
         wait_s = self.addresses.wait_s(key, now_s)
         self.addresses.take(key, now_s)
         if wait_s > 0:
-            raise Denied(429, TooManyTries(wait_s))
+            raise too_many(wait_s)
 
     def give_back_try(self, address: str) -> None:
         """It was a good one."""
