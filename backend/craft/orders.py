@@ -176,10 +176,13 @@ def _land(step: CraftStep, given: CraftOrdered) -> None:
 
 
 def _abort(step: CraftStep, given: CraftOrdered) -> None:
-    """The search is over at once; the craft comes home, held first."""
+    """The search is over at once; the craft comes home, held first. One that was held after the end comes home, too."""
     _refuse_not_started(step)
     if step.search.stage == "ended":
-        raise Refused(refusals.MissionOver())
+        if step.craft.phase != "hold":
+            raise Refused(refusals.MissionOver())
+        _return(step, given)
+        return
     reason = Ordered("abort", given.by)
     step.do(CancelWork())
     _take_from_failsafe(step, given.by)

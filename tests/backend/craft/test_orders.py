@@ -29,6 +29,7 @@ from backend.events import (
     BearingExcluded,
     FlightStarted,
     GroundFact,
+    MissionEnded,
     MissionStarted,
     Phase,
     PlanChosen,
@@ -37,6 +38,7 @@ from backend.events import (
 )
 from backend.reasons import PreflightFailed, refusals
 from backend.reasons.safety import NotGivenBack, PilotControls
+from backend.reasons.search import Localized
 
 
 def test_a_failed_preflight_refuses_the_start_and_says_why() -> None:
@@ -233,6 +235,18 @@ def test_an_aborted_craft_still_answers_hold_and_return_until_it_is_down_and_goe
     everything = (commands.Hold(), commands.Return(), commands.Land(), commands.Abort(), commands.Resume())
     for order in (*everything, commands.Start()):
         assert refusal(walk.order(order)) == refusals.MissionOver()
+
+
+@pytest.mark.parametrize("ended_by", [commands.Abort(), commands.Return()])
+def test_an_abort_brings_home_what_was_held_after_the_end(ended_by: commands.ForCraft) -> None:
+    walk = CraftWalk().to("measuring")
+    walk.order(ended_by)
+    walk.fold(MissionEnded(outcome="not_localized", reason=Localized(), mission_time_s=1.0))
+    assert refusal(walk.order(commands.Abort())) == refusals.MissionOver(), "it comes home already"
+    walk.order(commands.Hold())
+    asked = walk.order(commands.Abort())
+    assert sent(asked) == [effects.ReturnHome()]
+    assert walk.craft.phase == "returning"
 
 
 def test_a_pilot_who_flies_after_the_end_gives_the_vehicle_back_to_be_held() -> None:
