@@ -110,13 +110,14 @@ def stop_on_signals(running: RunningServer, say: Callable[[str], None]) -> None:
     leaving: list[asyncio.Task[None]] = []
 
     def stop() -> None:
+        if leaving:
+            return
         for number in STOPPING:
-            loop.remove_signal_handler(number)
             signal.signal(number, signal.SIG_DFL)
         leaving.append(asyncio.create_task(_leave(running, say)))
 
-    for number in STOPPING:
-        loop.add_signal_handler(number, stop)
+    for number in STOPPING:  # not loop.add_signal_handler: a signal is lost to it while the loop's wakeup pipe is full
+        signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop))
 
 
 async def _leave(running: RunningServer, say: Callable[[str], None]) -> None:
