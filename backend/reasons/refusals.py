@@ -43,7 +43,7 @@ class MissionOver:
 @dataclass(frozen=True, slots=True)
 class NotHeld:
     code: Literal["not_held"] = "not_held"
-    english: ClassVar[Words] = Words("The mission is not held.")
+    english: ClassVar[Words] = Words("The mission is not held.", "To go on from here, hold it first.")
 
 
 @dataclass(frozen=True, slots=True)

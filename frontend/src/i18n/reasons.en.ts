@@ -1303,7 +1303,7 @@ export const reasonsEn: ReasonTable = {
   },
   not_held: {
     text: "The mission is not held.",
-    remedy: "",
+    remedy: "To go on from here, hold it first.",
   },
   no_countdown: {
     text: "Nothing counts down: the countdown is over, or was stopped before.",

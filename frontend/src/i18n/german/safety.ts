@@ -68,7 +68,7 @@ export const safety = {
   not_started: { text: "Die Mission hat nicht begonnen.", remedy: "Sie zuerst starten." },
   already_started: { text: "Die Mission hat schon begonnen.", remedy: "Für den nächsten Flug eine neue entwerfen." },
   mission_over: { text: "Die Mission ist zu Ende.", remedy: "Eine neue entwerfen." },
-  not_held: { text: "Die Mission ist nicht angehalten.", remedy: "" },
+  not_held: { text: "Die Mission ist nicht angehalten.", remedy: "Erst anhalten, um von hier aus weiterzumachen." },
   no_countdown: { text: "Es wird nicht zurückgezählt: Es ist vorbei oder wurde schon gestoppt.", remedy: "" },
   landing_already: { text: "Das Fluggerät landet schon am Startplatz.", remedy: "Halten unterbricht die Landung." },
   on_the_way_home: {
