@@ -194,6 +194,9 @@ def _change_area(step: SearchStep, given: SearchOrdered, command: ChangeArea) ->
         case "open":
             for reason in given.objections:
                 raise Refused(reason)
+            for name in command.search.priors:
+                if name not in step.state.emitters:
+                    raise Refused(refusals.NoSuchEmitter(name))
     step.record(AreaChanged(search=command.search, by=given.by))
     step.do(SearchElsewhere())
     update_stale_beliefs(step)

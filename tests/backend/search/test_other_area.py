@@ -23,11 +23,11 @@ from backend.mission.effects import OfCraft
 from backend.mission.inputs import Context
 from backend.mission.state import fold
 from backend.reasons import search as reasons
-from backend.reasons.refusals import AreaOnlyInHold, MissionDoesNotFly, MissionOver, NotStarted
+from backend.reasons.refusals import AreaOnlyInHold, MissionDoesNotFly, MissionOver, NoSuchEmitter, NotStarted
 from backend.reasons.safety import InsideNoFly, OutsideFence
 from backend.search.effects import Record, SearchElsewhere, UpdateBelief
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
-from backend.spec import Polygon, SearchArea
+from backend.spec import Polygon, SearchArea, UniformPriorSpec
 
 CHANGE = commands.ChangeArea(search=OTHER_AREA)
 
@@ -113,6 +113,13 @@ def test_objections_refuse_the_change_and_become_facts() -> None:
     assert refusal(asked) == VETO
     assert walk.search.spec == SPEC
     assert walk.kinds[-1] == "command_refused"
+
+
+def test_an_area_for_an_emitter_that_is_not_looked_for_is_refused() -> None:
+    walk = Walk().to("hold")
+    stranger = CHANGE.search.model_copy(update={"priors": {"emitter-9": UniformPriorSpec()}})
+    assert refusal(walk.command(commands.ChangeArea(search=stranger))) == NoSuchEmitter("emitter-9")
+    assert walk.search.spec == SPEC
 
 
 async def held(stage: Stage) -> str:
