@@ -188,7 +188,9 @@ class SparseDirectionFinder:
         in_gap = binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg
         if in_gap:
             own_sigma = max(own_sigma, likelihood.spread_deg(bearing))
-        unshown = math.hypot(unheard, beside_lobe_sigma_deg(binned, refined.fitted_db, bearing, curve.beam_deg))
+        gain_db = curve.gain_db(bearing - binned.heading_deg) - curve.peak_db
+        beside = beside_lobe_sigma_deg(binned, refined.fitted_db, gain_db, bearing, curve.beam_deg)
+        unshown = math.hypot(unheard, beside)
         own_sigma = math.hypot(own_sigma, unshown)
         sigma = math.hypot(own_sigma, self.heading_sigma_deg, pattern.mismatch_sigma_deg, place_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)

@@ -67,8 +67,8 @@ def test_bearings_of_sectors_lie_within_two_sigma_as_often_as_they_say() -> None
 def test_echoes_from_where_nothing_was_heard_are_in_sigma() -> None:
     """They bend the lobe through the antenna's side lobes, and what the sector shows of them is too little."""
     finder, rng = SparseDirectionFinder(), np.random.default_rng(16)
-    beam_deg = PatternCurve(PATTERN).beam_deg
-    unheard_deg = unheard_sigma_deg(360.0 - SECTOR_DEG, beam_deg)
+    curve = PatternCurve(PATTERN)
+    unheard_deg = unheard_sigma_deg(360.0 - SECTOR_DEG, curve.beam_deg)
     inside = inside_without = 0
     for seed in range(2 * SWEEPS):
         angle, away_m = math.radians(rng.uniform(100.0, 260.0)), rng.uniform(40.0, 120.0)
@@ -79,7 +79,8 @@ def test_echoes_from_where_nothing_was_heard_are_in_sigma() -> None:
         found = finder.estimate(part, PATTERN)
         off = abs(math.remainder(found.bearing_deg, 360.0))
         binned = bin_sweep(part.heading_deg, part.power_db, PATTERN.offset_to_nose_deg)
-        beside_deg = beside_lobe_sigma_deg(binned, found.fitted_db, found.bearing_deg, beam_deg)
+        gain_db = curve.gain_db(found.bearing_deg - binned.heading_deg) - curve.peak_db
+        beside_deg = beside_lobe_sigma_deg(binned, found.fitted_db, gain_db, found.bearing_deg, curve.beam_deg)
         inside += off <= 2.0 * found.sigma_deg
         inside_without += off <= 2.0 * math.sqrt(found.sigma_deg**2 - unheard_deg**2 - beside_deg**2)
     assert inside >= 0.9 * 2 * SWEEPS
