@@ -176,13 +176,11 @@ def _land(step: CraftStep, given: CraftOrdered) -> None:
 
 
 def _abort(step: CraftStep, given: CraftOrdered) -> None:
-    """The search is over at once; the craft comes home, held first. One that was held after the end comes home, too."""
+    """The search is over at once; the craft comes home, held first. So does one that was held after the end."""
     _refuse_not_started(step)
-    if step.search.stage == "ended":
-        if step.craft.phase != "hold":
-            raise Refused(refusals.MissionOver())
-        _return(step, given)
-        return
+    ended = step.search.stage == "ended"
+    if ended and step.craft.phase != "hold":
+        raise Refused(refusals.MissionOver())
     reason = Ordered("abort", given.by)
     step.do(CancelWork())
     _take_from_failsafe(step, given.by)
@@ -191,7 +189,8 @@ def _abort(step: CraftStep, given: CraftOrdered) -> None:
     if not step.craft.taken_over:
         step.go("returning", reason)
         insist(step, "abort")
-    step.do(LeaveSearch(reason, "aborted"))
+    if not ended:
+        step.do(LeaveSearch(reason, "aborted"))
 
 
 def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:

@@ -245,8 +245,9 @@ def test_an_abort_brings_home_what_was_held_after_the_end(ended_by: commands.For
     assert refusal(walk.order(commands.Abort())) == refusals.MissionOver(), "it comes home already"
     walk.order(commands.Hold())
     asked = walk.order(commands.Abort())
-    assert sent(asked) == [effects.ReturnHome()]
+    assert sent(asked) == [effects.HoldVehicle()], "held first, as by every abort"
     assert walk.craft.phase == "returning"
+    assert not any(isinstance(effect, effects.LeaveSearch) for effect in asked), "it is over already"
 
 
 def test_a_pilot_who_flies_after_the_end_gives_the_vehicle_back_to_be_held() -> None:
