@@ -5,11 +5,9 @@ BIN := $(VENV)/bin
 STAMPS := .stamps
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
-# Two finish sooner than one where nothing runs beside them, and take half as much processor time again.
-TYPE_THREADS := 2
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage check check-python check-page check-aside kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
+.PHONY: run test coverage check check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
 
 # The tests start some two hundred servers and vehicles: where no bytecode is kept, each compiles every source again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -67,21 +65,19 @@ frontend/dist/.built: frontend/node_modules/.installed $(PAGE_SOURCES)
 browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
-# Stories leave the processors idle more than half of the time; what checks the sources fills that, and gives way to them.
 test: ## everything CI runs
-	$(call step,1/5,packages of Python into .venv; those of the page,a minute the first time)
+	$(call step,1/6,packages of Python into .venv; those of the page,a minute the first time)
 	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse setup-dev frontend/node_modules/.installed PIP_COMPILES=--no-compile
-	$(call step,2/5,the page and the planner's machine code,half a minute the first time)
+	$(call step,2/6,style; types; imports; schemas; figures; the tests of the page,three minutes)
+	@$(MAKE) --no-print-directory check
+	$(call step,3/6,the page and the planner's machine code,half a minute the first time)
 	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse build kernel
-	$(call step,3/5,what a user does on the page in Chromium; beside it style; types; imports; schemas; figures; the tests of the page,six minutes)
-	@$(MAKE) --no-print-directory -j 3 --output-sync=recurse check-aside stories
-	$(call step,4/5,unit tests,seven minutes)
+	$(call step,4/6,unit tests,seven minutes)
 	@$(MAKE) --no-print-directory unit
-	$(call step,5/5,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
+	$(call step,5/6,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
 	@$(MAKE) --no-print-directory system
-
-check-aside:
-	@nice -n 19 $(MAKE) --no-print-directory check-python check-page TYPE_THREADS=1
+	$(call step,6/6,what a user does on the page; in Chromium,five minutes)
+	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
 	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page
@@ -90,7 +86,7 @@ check-python:
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
-	$(BIN)/pyright --threads $(TYPE_THREADS)
+	$(BIN)/pyright --threads 2
 	$(BIN)/python -m backend.api.schema --check frontend/src/wire/openapi.json
 	$(BIN)/python -m backend.reasons.catalogue --check frontend/src/i18n/reasons.en.ts
 	$(BIN)/python -m tests.spoken --check tests/golden/reasons.json

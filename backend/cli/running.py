@@ -8,6 +8,7 @@ import socket
 from collections.abc import AsyncGenerator, Callable, Generator, Sequence
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass
+from types import FrameType
 
 import uvicorn
 
@@ -116,8 +117,11 @@ def stop_on_signals(running: RunningServer, say: Callable[[str], None]) -> None:
             signal.signal(number, signal.SIG_DFL)
         leaving.append(asyncio.create_task(_leave(running, say)))
 
+    def heard(_number: int, _frame: FrameType | None) -> None:
+        loop.call_soon_threadsafe(stop)
+
     for number in STOPPING:  # not loop.add_signal_handler: a signal is lost to it while the loop's wakeup pipe is full
-        signal.signal(number, lambda *_: loop.call_soon_threadsafe(stop))
+        signal.signal(number, heard)
 
 
 async def _leave(running: RunningServer, say: Callable[[str], None]) -> None:

@@ -4,7 +4,8 @@
 The nodes of the bias are equally spaced, so the readings' directions in the antenna's table go on by the same step from
 node to node: tables in just these steps hold side by side what the nodes ask for. Bearings may ask for nodes far closer
 than a beam of tens of degrees does: a stretch, never sharper than a bearing, is weighed at every few of them, and its
-logarithm is linear between. With sigma 7 degrees and nodes 2 degrees apart that is good to 2^2 / (8 7^2), a hundredth.
+logarithm is linear between. With sigma 7 degrees and nodes 2 degrees apart that is good to 2^2 / (8 7^2), a hundredth
+a stretch; what the stretches of a mission add up to is in docs/truth.md.
 """
 
 from __future__ import annotations

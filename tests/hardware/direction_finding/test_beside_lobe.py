@@ -87,7 +87,7 @@ def test_fading_in_the_other_lobe_of_a_loop_is_no_echo() -> None:
     loop, added = make_pattern("loop", angle, both, 0.0, FREQUENCY_HZ, "vertical"), list[float]()
     for _ in range(20):
         power = loop.gain_at(90.0 - HEADINGS) - 60.0 + rng.standard_normal(BINS)
-        sweep = Sweep(np.arange(BINS) * 0.1, HEADINGS, power, FREQUENCY_HZ, FRAME.origin, 0.0)
+        sweep = Sweep(np.linspace(0.0, 18.0, BINS), HEADINGS, power, FREQUENCY_HZ, FRAME.origin, 0.0)
         added.append(added_deg(sweep, loop, SparseDirectionFinder().estimate(sweep, loop)))
     assert np.median(added) < 1.0
 
