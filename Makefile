@@ -34,9 +34,9 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
 
-# PIP_COMPILES=--no-compile leaves it to Python to compile what is imported, a third of all: tests start sooner so.
 # Every package is compared with the hash that stands beside its version; what builds them is among them. The lists are
 # whole: pip that looks for what they need by itself may take a newer version of a package with an extra, and refuse it.
+# PIP_COMPILES=--no-compile leaves it to Python to compile what is imported, a third of all: tests start sooner so.
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --no-deps $(PIP_COMPILES)
 
 $(VENV)/.installed: pyproject.toml setup.py requirements/run.txt | $(VENV)/bin/python
