@@ -1,4 +1,4 @@
-"""How long whoever tried too often is told to wait."""
+"""The wait that is stated to somebody who tried too often."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A server that is told to end hears it, however late its event loop is."""
+"""A server hears the signal to end, however late its event loop is."""
 
 from __future__ import annotations
 
