@@ -117,8 +117,12 @@ def stop_on_signals(running: RunningServer, say: Callable[[str], None]) -> None:
             signal.signal(number, signal.SIG_DFL)
         leaving.append(asyncio.create_task(_leave(running, say)))
 
-    def heard(_number: int, _frame: FrameType | None) -> None:
-        loop.call_soon_threadsafe(stop)
+    def heard(number: int, _frame: FrameType | None) -> None:
+        if loop.is_closed():
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+        else:
+            loop.call_soon_threadsafe(stop)
 
     for number in STOPPING:  # not loop.add_signal_handler: a signal is lost to it while the loop's wakeup pipe is full
         signal.signal(number, heard)

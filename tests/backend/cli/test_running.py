@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -49,3 +51,22 @@ async def test_a_signal_is_heard_though_other_threads_called_more_than_a_late_lo
         await stopped.wait()
     assert len(left) == 1
     assert {signal.getsignal(each) for each in STOPPING} == {signal.SIG_DFL}, "a second one ends it at once"
+
+
+AFTER_ITS_LOOP = """
+import asyncio, os, signal, sys
+from backend.cli.running import stop_on_signals
+
+async def serve():
+    stop_on_signals(None, print)
+
+asyncio.run(serve())
+os.kill(os.getpid(), int(sys.argv[1]))
+"""
+
+
+@pytest.mark.parametrize("number", STOPPING)
+def test_a_signal_after_the_loop_has_ended_ends_the_process_without_a_traceback(number: signal.Signals) -> None:
+    command = [sys.executable, "-c", AFTER_ITS_LOOP, str(int(number))]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stderr) == (-number, "")
