@@ -72,7 +72,7 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory check
 	$(call step,3/6,the page and the planner's machine code,half a minute the first time)
 	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse build kernel
-	$(call step,4/6,unit tests,seven minutes)
+	$(call step,4/6,unit tests,six minutes and a half)
 	@$(MAKE) --no-print-directory unit
 	$(call step,5/6,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
 	@$(MAKE) --no-print-directory system
@@ -111,7 +111,7 @@ kernel-of-beliefs: setup-dev
 # tests/conftest.py holds the marks to the folders, so that no run has to import the others' tests.
 # tests/conftest.py also puts the files that take longest first; xdist's own order knows only how many tests they have.
 BY_FILE := --dist loadfile --no-loadscope-reorder
-UNIT_TESTS := $(BIN)/pytest -n 3 $(BY_FILE) --hypothesis-profile ci -m "not system and not browser and not long" \
+UNIT_TESTS := $(BIN)/pytest -n 4 $(BY_FILE) --hypothesis-profile ci -m "not system and not browser and not long" \
   --ignore tests/browser --ignore tests/system
 
 unit: kernel ## tests without a vehicle or a browser
