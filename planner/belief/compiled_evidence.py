@@ -7,7 +7,9 @@ instructions (compiled_rows.py), and a place touches only the nodes that some be
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,12 +27,15 @@ THREADS = 2
 """Among which the places are shared out, where stretches of way make each of them dear."""
 WORTH_A_THREAD = 200
 """Places."""
+MOST_KEPT = 20_000
+"""Places of which is kept what they say of the errors, two kilobytes each: more than a round of refinement weighs."""
 
 
 class Weigher:
     """evidence.Weigher of a source that took these bearings and heard these stretches.
 
-    Where stretches make a place dear, what it says of the errors is kept with it: sharing it out weighs no place again.
+    Where stretches make a place dear, what it says of the errors is kept with it: sharing out those that were weighed
+    last weighs none again.
     """
 
     def __init__(self, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()) -> None:
@@ -59,26 +64,43 @@ class Weigher:
         return SharedOut(table.sum(axis=(0, 1)), table.sum(axis=(1, 2)), table.sum(axis=(0, 2)), mean)
 
 
+class _Call(NamedTuple):
+    """row: of `told`, by the place's coordinates."""
+
+    row: dict[tuple[float, float], int]
+    told: Evidence
+
+
 class _Kept:
-    """What was told of places, by their coordinates."""
+    """What was told of the places that were weighed last."""
 
     def __init__(self) -> None:
-        self._places: dict[tuple[float, float], int] = {}
-        self._told = list[Evidence]()
+        self._calls = deque[_Call]()
 
     def keep(self, x: FloatArray, y: FloatArray, told: Evidence) -> Evidence:
         """x, y (c,) m. Returns `told`."""
-        first = sum(len(one.log) for one in self._told)
-        self._places.update(zip(zip(x.tolist(), y.tolist(), strict=True), range(first, first + len(x)), strict=True))
-        self._told.append(told)
+        self._calls.append(_Call({place: row for row, place in enumerate(_places(x, y))}, told))
+        while sum(len(one.row) for one in self._calls) > MOST_KEPT:
+            self._calls.popleft()
         return told
 
     def of(self, x: FloatArray, y: FloatArray) -> Evidence | None:
-        """Of the places (c,) x, y; None where one of them is new."""
-        rows = [self._places.get(place, -1) for place in zip(x.tolist(), y.tolist(), strict=True)]
-        if -1 in rows:
-            return None
-        return Evidence(*(np.concatenate(some)[rows] for some in zip(*self._told, strict=True)))
+        """Of the places (c,) x, y; None where one of them is not kept."""
+        wanted = _places(x, y)
+        missing = np.ones(len(wanted), dtype=bool)
+        found: Evidence | None = None
+        for call in self._calls:
+            rows = np.array([call.row.get(place, -1) for place in wanted])
+            held = rows >= 0
+            found = found or Evidence(*(np.empty((len(wanted), *some.shape[1:])) for some in call.told))
+            for whole, some in zip(found, call.told, strict=True):
+                whole[held] = some[rows[held]]
+            missing &= ~held
+        return None if missing.any() else found
+
+
+def _places(x: FloatArray, y: FloatArray) -> list[tuple[float, float]]:
+    return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
 def evidence(

@@ -153,6 +153,23 @@ def test_places_shared_out_to_threads_are_those_of_the_readable_one() -> None:
         assert ours == pytest.approx(theirs, abs=0.01)
 
 
+def test_places_that_are_kept_no_more_are_weighed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiled_evidence, "MOST_KEPT", 50)
+    x, y = np.random.default_rng(10).uniform(-150.0, 250.0, (2, 90))
+    seen, grid = sightings([Bearing(0.0, 0.0, 0.8, SIGMA, source="craft")]), nodes(ErrorPrior(), SIGMA, 4)
+    in_calls, at_once = (compiled_evidence.Weigher(seen, grid, [stretch(200.0, noise=3.0)]) for _ in range(2))
+    for part in (slice(0, 30), slice(30, 60), slice(60, 75), slice(75, 90)):
+        in_calls.log(x[part], y[part])
+    mass = np.full(30, 1 / 30)
+    with monkeypatch.context() as still_kept:
+        still_kept.setattr(compiled_evidence, "_told", None)
+        in_calls.shared_out(x[60:], y[60:], mass)
+    for part in (slice(60, 90), slice(0, 30)):
+        told = (one.shared_out(x[part], y[part], mass) for one in (in_calls, at_once))
+        for ours, theirs in zip(*told, strict=True):
+            assert ours == pytest.approx(theirs, rel=1e-12)
+
+
 def test_a_stretch_that_fits_nowhere_speaks_as_loud_as_an_outlier_and_leaves_numbers() -> None:
     wild = replace(stretch(330.0), power_db=tuple(1e6 * (-1.0) ** k for k in range(len(stretch(330.0).power_db))))
     grid = nodes(ErrorPrior(), SIGMA, 4)
