@@ -141,6 +141,9 @@ def run(
             field_rows(ways, setting, runs, _field_seed(scenario, runs, workers, seed), workers, scheduler, json_)
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)
+        except KeyboardInterrupt:
+            remark(f"stopped; nothing is kept of {FIELD_WORLD}, the same command begins again")
+            raise typer.Exit(130) from None
         return
     given = [name for name in FIELD_OPTIONS if _is_given(context, name)]
     if given:

@@ -196,3 +196,13 @@ def test_what_cannot_be_flown_is_refused_in_words(arguments, told):
     assert found.exit_code != 0
     assert told in found.output
     assert "Traceback" not in found.output
+
+
+def test_a_row_that_is_stopped_says_that_nothing_is_kept(monkeypatch):
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("backend.cli.field_study.spread", stopped)
+    ended = CliRunner().invoke(app, ["study", "run", "--scenario", "field-world", "--runs", "2"])
+    assert ended.exit_code == 130
+    assert "stopped; nothing is kept of field-world" in ended.output
