@@ -6,6 +6,10 @@ vehicle at the edge does not fall into it. No-fly areas are sent as they were dr
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import islice
+
+import numpy as np
 from shapely import LinearRing, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -15,6 +19,7 @@ from backend.reasons import carried
 from hardware.fence import FencePolygon, MissionNets, NetsPlan
 from hardware.frame import LocalFrame
 from hardware.ports import Vehicle, VehicleError
+from hardware.readings import Place
 from hardware.reasons.nets import NetsToSet, ParameterToSet
 
 MARGIN_M = 5.0
@@ -34,19 +39,29 @@ def mission_nets(limits: Limits) -> MissionNets:
     room = _outwards(outline)
     frame = limits.frame
     no_fly = [part for zone in limits.no_fly for part in _polygons(zone) if part.intersects(room)]
-    kept_out = tuple(_zone(part.exterior, False, frame) for part in no_fly)
+    kept_out = [(part.exterior, False) for part in no_fly]
     ceiling_m = limits.maximum_altitude_relative_m
     return MissionNets(
         home=frame.origin,
-        needed=(*_zones(outline, frame), *kept_out),
-        zones=(*_zones(room, frame), *kept_out),
+        needed=_zones([*_rings(outline), *kept_out], frame),
+        zones=_zones([*_rings(room), *kept_out], frame),
         ceiling_m=ceiling_m,
         net_ceiling_m=ceiling_m + CEILING_MARGIN_M,
     )
 
 
-def _zones(shape: Polygon, frame: LocalFrame) -> list[FencePolygon]:
-    return [_zone(shape.exterior, True, frame), *(_zone(hole, False, frame) for hole in shape.interiors)]
+def _rings(shape: Polygon) -> list[tuple[LinearRing, bool]]:
+    """Each with whether one stays inside it."""
+    return [(shape.exterior, True), *((hole, False) for hole in shape.interiors)]
+
+
+def _zones(rings: Sequence[tuple[LinearRing, bool]], frame: LocalFrame) -> tuple[FencePolygon, ...]:
+    """All corners at once: one by one, those of 300 no-fly areas would hold up the event loop."""
+    corners = [np.asarray(ring.coords)[:-1, :2] for ring, _ in rings]
+    places = (Place(lat, lon) for lon, lat in frame.to_lon_lat(np.concatenate(corners)))
+    return tuple(
+        FencePolygon(tuple(islice(places, len(some))), inside) for some, (_, inside) in zip(corners, rings, strict=True)
+    )
 
 
 def _outwards(outline: Polygon) -> Polygon:
@@ -68,10 +83,6 @@ def _grown(shape: BaseGeometry, roughness_m: float) -> Polygon:
 
 def _polygons(shape: BaseGeometry) -> list[Polygon]:
     return [part for part in getattr(shape, "geoms", (shape,)) if isinstance(part, Polygon)]
-
-
-def _zone(ring: LinearRing, inside: bool, frame: LocalFrame) -> FencePolygon:
-    return FencePolygon(tuple(frame.to_geo(corner[0], corner[1]) for corner in ring.coords[:-1]), inside)
 
 
 async def nets_check(vehicle: Vehicle, limits: Limits) -> CheckFact:

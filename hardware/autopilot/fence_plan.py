@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from shapely import Point, Polygon, union_all
+import numpy as np
+from shapely import Point, Polygon, buffer, linearrings, polygons, union_all
 from shapely.geometry.base import BaseGeometry
 
 from hardware.autopilot.dialect import Dialect, OwnFence
@@ -42,12 +43,14 @@ def plan_nets(dialect: Dialect, present: Nets, wanted: MissionNets) -> NetsPlan:
 def _within(own: OwnFence, zones: Sequence[FenceZone], wanted: MissionNets) -> tuple[FencePolygon, ...]:
     """The mission's net, cut to the owner's fence. Raises VehicleError when that cuts into what the mission needs."""
     frame = LocalFrame(wanted.home)
-    needed, net = _room(wanted.needed, frame, False), _room(wanted.zones, frame, False)
     theirs = _room(zones, frame, own.any_inclusion)
     if own.radius_m is not None:
         circle = Point(0.0, 0.0).buffer(own.radius_m, quad_segs=64)
         theirs = circle if theirs is None else theirs.intersection(circle)
-    if theirs is None or needed is None or net is None:
+    if theirs is None:
+        return wanted.zones
+    needed, net = _room(wanted.needed, frame, False), _room(wanted.zones, frame, False)
+    if needed is None or net is None:
         return wanted.zones
     if not theirs.buffer(SLACK_M).covers(needed):
         raise VehicleError(OwnFenceTighter(_reach(needed.difference(theirs), theirs)))
@@ -72,10 +75,9 @@ def _reach(outside: BaseGeometry, theirs: BaseGeometry) -> float:
 
 def _room(zones: Sequence[FenceZone], frame: LocalFrame, any_inclusion: bool) -> BaseGeometry | None:
     """Where these zones let one fly, metres ENU; None: they bound nothing. any_inclusion: inside one is enough."""
-    inside = [_shape(zone, frame) for zone in zones if isinstance(zone, FencePolygon | FenceCircle) and zone.inside]
-    outside = [
-        _shape(zone, frame) for zone in zones if isinstance(zone, FencePolygon | FenceCircle) and not zone.inside
-    ]
+    bounding = [zone for zone in zones if isinstance(zone, FencePolygon | FenceCircle)]
+    inside = _shapes([zone for zone in bounding if zone.inside], frame)
+    outside = _shapes([zone for zone in bounding if not zone.inside], frame)
     if not inside and not outside:
         return None
     room: BaseGeometry = Point(0.0, 0.0).buffer(_EVERYWHERE_M)
@@ -90,10 +92,16 @@ def _room(zones: Sequence[FenceZone], frame: LocalFrame, any_inclusion: bool) ->
 _EVERYWHERE_M = 100_000.0
 
 
-def _shape(zone: FencePolygon | FenceCircle, frame: LocalFrame) -> BaseGeometry:
-    if isinstance(zone, FenceCircle):
-        return Point(frame.to_enu(zone.centre)).buffer(zone.radius_m, quad_segs=64)
-    return Polygon([frame.to_enu(corner) for corner in zone.corners]).buffer(0.0)
+def _shapes(zones: Sequence[FencePolygon | FenceCircle], frame: LocalFrame) -> list[BaseGeometry]:
+    """All corners at once: one by one, those of 300 no-fly areas would hold up the event loop."""
+    circles = [zone for zone in zones if isinstance(zone, FenceCircle)]
+    round_ones = [Point(frame.to_enu(zone.centre)).buffer(zone.radius_m, quad_segs=64) for zone in circles]
+    drawn = [zone.corners for zone in zones if isinstance(zone, FencePolygon)]
+    if not drawn:
+        return round_ones
+    corners = frame.to_enu_points(np.array([(corner.lon, corner.lat) for ring in drawn for corner in ring]))
+    of = np.repeat(np.arange(len(drawn)), [len(ring) for ring in drawn])
+    return [*round_ones, *buffer(polygons(linearrings(corners, indices=of)), 0.0)]
 
 
 def _parts(shape: BaseGeometry) -> list[Polygon]:

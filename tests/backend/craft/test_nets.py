@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import pymap3d
 import pytest
 from equipment import FRAME, FlatVehicle, spec
 from shapely import MultiPolygon, Point, Polygon, box
@@ -57,6 +58,29 @@ def test_holes_and_no_fly_areas_are_to_be_kept_out_of_and_what_lies_elsewhere_is
     assert (outline.inside, hole.inside, zone.inside) == (True, False, False)
     assert shape(hole).symmetric_difference(box(25, 25, 55, 55)).area < 1.0
     assert shape(zone).symmetric_difference(no_fly[0]).area < 0.1
+
+
+def test_the_corners_of_hundreds_of_no_fly_areas_are_turned_into_degrees_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """One by one they held up the event loop for a quarter of a second."""
+    calls, at_once = [], pymap3d.enu2geodetic
+
+    def counted(*given: object) -> object:
+        calls.append(given)
+        return at_once(*given)
+
+    centres = [(x, y) for x in range(-95, 95, 11) for y in range(-95, 95, 11)]
+    no_fly = tuple(Point(centre).buffer(4.0) for centre in centres)
+    allowed = replace(limits(), fence=box(-100.0, -100.0, 100.0, 100.0), no_fly=no_fly)
+    monkeypatch.setattr(pymap3d, "enu2geodetic", counted)
+    wanted = mission_nets(allowed)
+    assert len(calls) == 2, "what is needed, and the net"
+    monkeypatch.undo()
+    assert len(wanted.zones) == 1 + len(no_fly)
+    for zone, drawn in zip(wanted.zones[1:], no_fly, strict=True):
+        assert len(zone.corners) == len(drawn.exterior.coords) - 1
+        assert shape(zone).hausdorff_distance(drawn) < 1e-6
 
 
 async def test_the_checklist_says_what_the_start_would_set() -> None:
