@@ -75,7 +75,10 @@ def travel_distances(problem: Problem, graph: VisibilityGraph, start: FloatArray
         return direct
     first = _lengths(problem, graph.barriers, start[None], graph.nodes)[0]
     last = _lengths(problem, graph.barriers, graph.nodes, ends)
-    to_node = (first[:, None] + graph.distances).min(axis=0)
+    seen = np.isfinite(first)
+    if not seen.any():
+        return direct
+    to_node = (first[seen, None] + graph.distances[seen]).min(axis=0)
     return np.minimum(direct, (to_node[:, None] + last).min(axis=0))
 
 
@@ -94,10 +97,13 @@ def travel_path(problem: Problem, start: FloatArray, end: FloatArray) -> FloatAr
         raise _no_way(start, end)
     first = _lengths(problem, graph.barriers, freed[None], graph.nodes)[0]
     last = _lengths(problem, graph.barriers, graph.nodes, end[None])[:, 0]
-    total = first[:, None] + graph.distances + last
-    a, b = np.unravel_index(int(np.argmin(total)), total.shape)
-    if not np.isfinite(total[a, b]):
+    # of thousands of corners few are seen from either end: the others' ways are infinite
+    firsts, lasts = np.flatnonzero(np.isfinite(first)), np.flatnonzero(np.isfinite(last))
+    total = first[firsts, None] + graph.distances[np.ix_(firsts, lasts)] + last[lasts]
+    if not np.isfinite(total).any():
         raise _no_way(start, end)
+    row, column = np.unravel_index(int(np.argmin(total)), total.shape)
+    a, b = firsts[row], lasts[column]
     chain = [int(b)]
     while chain[-1] != a:
         chain.append(int(graph.predecessors[a, chain[-1]]))
