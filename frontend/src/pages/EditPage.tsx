@@ -1,5 +1,5 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
@@ -176,13 +176,17 @@ export function EditPage({ route }: { route: EditRoute }) {
   const [told, setTold] = useState<readonly string[]>([]);
   const [saving, setSaving] = useState(false);
   const [restored, setRestored] = useState(false);
+  const loads = useRef(0);
 
   const load = () => {
     setProblem(null);
     draft.value = null; // what is typed until it has come would be lost
+    const mine = ++loads.current;
     specFor(route).then(
-      ({ spec, suggested }) => (draft.value = { key, spec, hasArea: true, suggested, text: {} }), // kept from the first change on
-      (error: unknown) => setProblem(asProblem(error)),
+      ({ spec, suggested }) => {
+        if (mine === loads.current) draft.value = { key, spec, hasArea: true, suggested, text: {} }; // kept from the first change on
+      },
+      (error: unknown) => mine === loads.current && setProblem(asProblem(error)),
     );
   };
   useEffect(() => {
@@ -193,6 +197,8 @@ export function EditPage({ route }: { route: EditRoute }) {
     else load();
     const stopCoverage = watchCoverage();
     return () => {
+      loads.current += 1;
+      draft.value = null; // the next page would show it until its own has come
       clearPreview();
       stopCoverage();
     };
@@ -221,7 +227,7 @@ export function EditPage({ route }: { route: EditRoute }) {
     }
   };
 
-  const now = draft.value;
+  const now = draft.value?.key === key ? draft.value : null;
   return (
     <div class="edit" data-testid="edit-page">
       <EditMapArea onTold={setTold} />
