@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from unittest.mock import Mock
 
 import pymap3d
 import pytest
@@ -64,19 +65,13 @@ def test_the_corners_of_hundreds_of_no_fly_areas_are_turned_into_degrees_at_once
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """One by one they held up the event loop for a quarter of a second."""
-    calls, at_once = [], pymap3d.enu2geodetic
-
-    def counted(*given: object) -> object:
-        calls.append(given)
-        return at_once(*given)
-
+    turned = Mock(side_effect=pymap3d.enu2geodetic)
     centres = [(x, y) for x in range(-95, 95, 11) for y in range(-95, 95, 11)]
     no_fly = tuple(Point(centre).buffer(4.0) for centre in centres)
     allowed = replace(limits(), fence=box(-100.0, -100.0, 100.0, 100.0), no_fly=no_fly)
-    monkeypatch.setattr(pymap3d, "enu2geodetic", counted)
+    monkeypatch.setattr(pymap3d, "enu2geodetic", turned)
     wanted = mission_nets(allowed)
-    assert len(calls) == 2, "what is needed, and the net"
-    monkeypatch.undo()
+    assert turned.call_count == 2, "what is needed, and the net"
     assert len(wanted.zones) == 1 + len(no_fly)
     for zone, drawn in zip(wanted.zones[1:], no_fly, strict=True):
         assert len(zone.corners) == len(drawn.exterior.coords) - 1
