@@ -12,10 +12,11 @@ import math
 import zipfile
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from datetime import datetime
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
 from typing import Any, Literal, cast
 
+import numpy as np
 from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
@@ -47,8 +48,14 @@ MOST_SAMPLES_BYTES = 16 * 2**20
 """Of one sweep, unpacked."""
 ROW_BYTES = 3 * 8
 POINTS_A_LINE = 5_000
-MOST_TOLD, LONGEST_MODE = 1e6, 40
-"""Metres, degrees or percent that a point of a path may tell, and characters of its mode; NaN: it does not."""
+EARLIEST, LATEST = datetime(1970, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
+"""Between them a clock may be, one that was never set among them; beyond some years no export can be written."""
+LARGEST = 1e100
+"""Of any number: far more than a mission tells, and its square is finite, too."""
+MOST_COUNTED, HIGHEST_HZ = 2**31 - 1, 1e12
+MOST_TOLD, LONGEST_MODE, LONGEST_TAG = 1e6, 40, 200
+"""Metres, degrees, percent or decibels that a point of a path or a sweep may tell, and characters of its words; NaN of
+a point: it does not."""
 WRITE_S = 10.0
 AT_ONCE = 500
 
@@ -179,9 +186,17 @@ def _software(manifest: bytes | None) -> str:
 
 def _parsed(text: bytes, name: str) -> Any:
     try:
-        return json.loads(text)
+        return json.loads(text, parse_float=_number, parse_int=_number)
     except (ValueError, RecursionError) as error:
         raise _wrong("damaged", name) from error
+
+
+def _number(text: str) -> float | int:
+    """Raises ValueError for one that cannot be reckoned with."""
+    number = float(text)
+    if abs(number) > LARGEST:
+        raise ValueError(f"no mission tells a number of {len(text)} characters that is as large as this")
+    return int(text) if text.lstrip("-").isdigit() else number
 
 
 def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
@@ -197,9 +212,13 @@ def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
     if len(recorded) > MOST_EVENTS:
         raise _refused("too_large")
     in_order = all(r.seq == seq and r.mission_id == mission_id for seq, r in enumerate(recorded, start=1))
-    if not in_order or not _is_id(mission_id) or any(r.at_utc.tzinfo is None for r in recorded):
+    if not in_order or not _is_id(mission_id) or not all(_in_time(r.at_utc) for r in recorded):
         raise _wrong("not_exported", JOURNAL)
     return recorded, today["tracks"]
+
+
+def _in_time(at_utc: datetime) -> bool:
+    return at_utc.tzinfo is not None and EARLIEST <= at_utc < LATEST
 
 
 def _is_id(text: Any) -> bool:
@@ -217,17 +236,24 @@ def _lines(files: Mapping[str, bytes], name: str, most: int) -> Iterable[tuple[b
 def _sweep(told: tuple[bytes, str], mission_id: str) -> SweepEntry:
     line, name = told
     try:
-        sweep = SWEEP.validate_python(decode(line))
+        sweep = SWEEP.validate_python(asdict(decode(line)))  # an instance would pass unlooked at
         found = zlib.decompressobj()
         samples = found.decompress(sweep.samples, MOST_SAMPLES_BYTES)
-        numbers = (sweep.frequency_hz, sweep.altitude_amsl_m, sweep.drift_m, sweep.noise_floor_db)
+        told_of = (sweep.altitude_amsl_m, sweep.drift_m, sweep.noise_floor_db)
+        counts = (sweep.place_number, sweep.attempt, sweep.clipped_samples)
         sound = (
             sweep.mission_id == mission_id
             and _is_id(sweep.sweep_id)
             and found.eof
             and len(samples) % ROW_BYTES == 0
             and _on_earth(sweep.lat_deg, sweep.lon_deg)
-            and all(number is None or math.isfinite(number) for number in numbers)
+            and _is_id(sweep.emitter_id)
+            and (sweep.craft_id is None or _is_id(sweep.craft_id))
+            and 0 < sweep.frequency_hz <= HIGHEST_HZ
+            and all(number is None or abs(number) <= MOST_TOLD for number in told_of)
+            and all(0 <= count <= MOST_COUNTED for count in counts)
+            and (sweep.tag is None or (len(sweep.tag) <= LONGEST_TAG and sweep.tag.isprintable()))
+            and not bool((np.abs(np.frombuffer(samples, "<f8")) > LARGEST).any())
         )
     except (ValueError, LookupError, TypeError, RecursionError, zlib.error) as error:
         raise _wrong("damaged", name) from error
@@ -240,9 +266,10 @@ def _track(told: tuple[bytes, str], mission_id: str) -> TrackEntry:
     line, name = told
     try:
         track = TRACK.validate_python(decode(line))
-    except (ValueError, LookupError, TypeError, RecursionError) as error:
+        sound = track.mission_id == mission_id and _is_id(track.craft_id) and all(map(_sound, track.points))
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         raise _wrong("damaged", name) from error
-    if track.mission_id != mission_id or not _is_id(track.craft_id) or not all(map(_sound, track.points)):
+    if not sound:
         raise _wrong("damaged", name)
     return track
 
@@ -250,7 +277,7 @@ def _track(told: tuple[bytes, str], mission_id: str) -> TrackEntry:
 def _sound(point: TrackPoint) -> bool:
     told = (point.altitude_amsl_m, point.altitude_relative_m, point.heading_deg, point.battery_percent)
     return (
-        0 <= point.at_s < 1e11
+        0 <= point.at_s < LATEST.timestamp()
         and _on_earth(point.lat_deg, point.lon_deg)
         and not any(value is not None and abs(value) > MOST_TOLD for value in told)
         and (point.mode is None or (len(point.mode) <= LONGEST_MODE and point.mode.isprintable()))

@@ -8,6 +8,7 @@ import gzip
 import io
 import json
 import pickle
+import re
 import struct
 import zipfile
 import zlib
@@ -332,6 +333,91 @@ def still_flying(text: bytes) -> bytes:
     told = json.loads(text)
     end = next(at for at, record in enumerate(told["events"]) if record["event"]["kind"] == "mission_ended")
     return json.dumps(told | {"events": told["events"][:end]}).encode()
+
+
+def sweeps_with(**changes: Any) -> Callable[[bytes], bytes]:
+    def change(text: bytes) -> bytes:
+        told = json.loads(text.split(b"\n")[0])
+        return json.dumps(told | {"fields": told["fields"] | changes}).encode()
+
+    return changed("sweeps.jsonl", change)
+
+
+def samples_of(number: float) -> str:
+    return base64.b64encode(zlib.compress(np.full(30, number).tobytes())).decode()
+
+
+def point_with(**changes: Any) -> Callable[[bytes], bytes]:
+    def change(text: bytes) -> bytes:
+        told = json.loads(text.split(b"\n")[0])
+        told["fields"]["points"][0] |= changes
+        return json.dumps(told).encode()
+
+    return changed("tracks.jsonl", change)
+
+
+def at(moment: Any) -> Callable[[bytes], bytes]:
+    """The mission's first fact is of that time."""
+
+    def change(text: bytes) -> bytes:
+        told = json.loads(text)
+        told["events"][0]["at_utc"] = moment
+        return json.dumps(told).encode()
+
+    return changed("mission.json", change)
+
+
+def as_long_as(axis_m: str) -> Callable[[bytes], bytes]:
+    """The region of an estimate."""
+    return changed(
+        "mission.json", lambda text: re.sub(rb'"major_axis_m": [0-9.e-]+', f'"major_axis_m": {axis_m}'.encode(), text)
+    )
+
+
+@pytest.mark.parametrize(
+    "moment", ["9999-12-31T23:59:59-14:00", "9999-12-31T23:59:59Z", "0001-01-01T00:00:00Z", -1, -62135596800]
+)
+def test_facts_of_a_time_that_no_clock_shows_are_refused(moment):
+    """Such a mission could not be read again, or not be exported."""
+    with pytest.raises(BundleRefused) as refused:
+        read_bundle(at(moment)(SOUND))
+    assert refused.value.reason == BundleFileWrong("not_exported", "mission.json")
+
+
+def test_a_mission_of_a_clock_that_was_never_set_is_brought_in():
+    assert read_bundle(at("1970-01-01T00:00:07Z")(SOUND)).rows[0].at_us == 7_000_000
+
+
+@pytest.mark.parametrize("axis_m", ["1e308", "-1e308", "1e101", "1" + "0" * 300, "1e999"])
+def test_numbers_whose_squares_are_not_finite_are_refused(axis_m):
+    with pytest.raises(BundleRefused) as refused:
+        read_bundle(as_long_as(axis_m)(SOUND))
+    assert refused.value.reason == BundleFileWrong("damaged", "mission.json")
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"attempt": 1.5}, {"attempt": "one"}, {"attempt": -1}, {"place_number": 10**30},
+        {"clipped_samples": 2**63}, {"frequency_hz": 1e308}, {"frequency_hz": -1.0},
+        {"altitude_amsl_m": 1e308}, {"noise_floor_db": float("nan")}, {"tag": "x" * 201}, {"tag": "\x00"},
+        {"emitter_id": "\x00"}, {"craft_id": "../x"}, {"samples": samples_of(1e308)}, {"samples": samples_of(-1e308)},
+    ],
+)  # fmt: skip
+def test_a_sweep_with_wrong_values_is_refused(wrong):
+    with pytest.raises(BundleRefused) as refused:
+        read_bundle(sweeps_with(**wrong)(SOUND))
+    assert refused.value.reason == BundleFileWrong("damaged", "sweeps.jsonl")
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"at_s": "x"}, {"at_s": 9e10}, {"lat_deg": None}, {"mode": 5}, {"heading_deg": "east"}, {"battery_percent": []}],
+)
+def test_a_path_with_wrong_values_is_refused(wrong):
+    with pytest.raises(BundleRefused) as refused:
+        read_bundle(point_with(**wrong)(SOUND))
+    assert refused.value.reason == BundleFileWrong("damaged", "tracks.jsonl")
 
 
 @pytest.mark.parametrize(
