@@ -15,6 +15,8 @@ from planner.reason import ReasonedError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
 
+LARGEST = 1e100
+"""Of any number: its square is finite, too."""
 LONGEST_CELL, MOST_NAMED = 60, 20
 """Characters of a cell that a reason shows, and how many tags it names."""
 
@@ -40,14 +42,15 @@ class Row:
     cells: tuple[str, ...]
 
     def number(self, column: int) -> float | None:
-        """The cell as a float, None when it is missing, empty or no number."""
+        """The cell as a float, None when it is missing, empty, no number or one that cannot be reckoned with."""
         if column >= len(self.cells):
             return None
         cell = self.cells[column]
         try:
-            return float(cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
+            number = float(cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
         except ValueError:
             return None
+        return None if abs(number) > LARGEST else number
 
 
 @dataclass(frozen=True, slots=True)

@@ -192,6 +192,7 @@ def test_unclosed_and_reopened_rotations_are_remarked(tmp_path: Path) -> None:
         "0,-50\n10,-51.5\nx,y\n20,nan\n370,-60\n",
         "# heading_deg; power_db\n0;-50\n10;-51.5\nx;y\n20;nan\n370;-60\n",
         "power_dbm\theading\n-50\t0\n-51.5\t10\ny\tx\nnan\t20\n-60\t370\n",
+        "0,-50\n10,-51.5\n1e308,-40\n20,-1e308\n370,-60\n",
     ],
 )
 def test_plain_tables(tmp_path: Path, text: str) -> None:
