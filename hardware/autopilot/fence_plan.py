@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from shapely import Point, Polygon, buffer, linearrings, polygons, union_all
+from shapely import Point, Polygon, union_all
 from shapely.geometry.base import BaseGeometry
 
 from hardware.autopilot.dialect import Dialect, OwnFence
@@ -98,10 +98,10 @@ def _shapes(zones: Sequence[FencePolygon | FenceCircle], frame: LocalFrame) -> l
     round_ones = [Point(frame.to_enu(zone.centre)).buffer(zone.radius_m, quad_segs=64) for zone in circles]
     drawn = [zone.corners for zone in zones if isinstance(zone, FencePolygon)]
     if not drawn:
-        return round_ones
+        return [*round_ones]
     corners = frame.to_enu_points(np.array([(corner.lon, corner.lat) for ring in drawn for corner in ring]))
-    of = np.repeat(np.arange(len(drawn)), [len(ring) for ring in drawn])
-    return [*round_ones, *buffer(polygons(linearrings(corners, indices=of)), 0.0)]
+    rings = np.split(corners, np.cumsum([len(ring) for ring in drawn])[:-1])
+    return [*round_ones, *(Polygon(ring).buffer(0.0) for ring in rings)]
 
 
 def _parts(shape: BaseGeometry) -> list[Polygon]:
