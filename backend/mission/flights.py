@@ -312,8 +312,8 @@ class Flights:
                 runner.join(known)
         runner.give(ServerCameBack())
         runner.recover()
+        await asyncio.to_thread(lay_out_ways, task.first)  # the first look at the way home would do it on this thread
         self._fly(runner)
-        await asyncio.to_thread(lay_out_ways, task.first)
         log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
 
     async def _close_interrupted(self, mission_id: str, why: Interrupted) -> None:
