@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from dataclasses import replace
 from itertools import count
+from unittest.mock import Mock
 from uuid import uuid4
 
 import pytest
@@ -27,6 +29,8 @@ from backend.events import (
     SafetyVetoed,
     SweepStarted,
 )
+from backend.mission import flights
+from backend.mission.runner import MissionRunner
 from backend.mission.state import fold
 from backend.reasons import Interrupted, NotLocalized, refusals
 from backend.reasons.flight import Ordered
@@ -169,6 +173,24 @@ async def test_of_several_unfinished_missions_the_last_comes_back_and_the_others
             assert not (await order(stage, mission_id, refused)).accepted
     assert await stage.journal.unfinished() == [newest]
     assert stage.active.mission_id == newest
+
+
+async def test_a_mission_that_comes_back_is_held_before_its_ways_are_laid_out_and_watched_only_then(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of thousands of corners of no-fly areas it takes seconds, on whichever thread asks first for the way home."""
+    mission_id = await flying(stage)
+    laid = threading.Event()
+    monkeypatch.setattr(flights, "lay_out_ways", lambda _task: laid.wait(20.0))
+    watched = Mock(side_effect=MissionRunner.begin)
+    monkeypatch.setattr(MissionRunner, "begin", lambda runner: watched(runner))
+    coming_back = asyncio.create_task(stage.restart())
+    await stage.until_true(lambda: stage.vehicle.names[-1:] == ["hold"])
+    assert not watched.called
+    laid.set()
+    await coming_back
+    await stage.until_phase(mission_id, "hold")
+    assert watched.called
 
 
 async def test_a_mission_that_can_no_longer_be_read_is_closed_and_the_server_starts(stage: Stage) -> None:
