@@ -7,19 +7,18 @@ import logging
 from collections.abc import Callable
 
 from backend.events import BeliefUpdated
-from backend.search.inputs import BeliefReady
+from backend.search.inputs import BeliefFailed, BeliefReady
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from planner.belief.grid import GridBelief
-from planner.types import PlannerError
 
 log = logging.getLogger("crossfix.mission")
 
 
 class Beliefs:
-    """give: takes a finished belief."""
+    """give: takes a finished belief, or that there is none."""
 
-    def __init__(self, task: SearchTask, give: Callable[[BeliefReady], object]) -> None:
+    def __init__(self, task: SearchTask, give: Callable[[BeliefReady | BeliefFailed], object]) -> None:
         self._task = task
         self._give = give
         self._running: dict[str, asyncio.Task[None]] = {}
@@ -40,8 +39,9 @@ class Beliefs:
     async def _fold(self, search: SearchState, emitter_id: str) -> None:
         try:
             fact, belief = await asyncio.to_thread(self._folded, search, emitter_id)
-        except PlannerError as error:
-            log.error("the belief about %s cannot be computed: %s", emitter_id, error)
+        except Exception:
+            log.exception("the belief about %s cannot be computed", emitter_id)
+            self._give(BeliefFailed(search.behind(emitter_id), emitter_id))
             return
         self._newest[emitter_id] = belief
         self._give(BeliefReady(search.behind(emitter_id), fact))

@@ -100,6 +100,18 @@ class BearingsCorrected:
 
 
 @dataclass(frozen=True, slots=True)
+class BeliefBroke:
+    """A fault of ours; the log has the traceback. Craft that wait for this belief hover on."""
+
+    emitter_id: str
+    code: Literal["belief_broke"] = "belief_broke"
+    english: ClassVar[Words] = Words(
+        "Updating the belief about {emitter_id} failed inside Crossfix: no next place is planned.",
+        "Leave out the bearing that came last, or order the return.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class Localized:
     code: Literal["localized"] = "localized"
     english: ClassVar[Words] = Words("Localized: the expected error is below the threshold.")
@@ -355,6 +367,7 @@ SearchReason = (
     | AreaTooFar
     | HeadingsAskew
     | BearingsCorrected
+    | BeliefBroke
     | Localized
     | LocalizedAgainst
     | RecordingTooLong

@@ -40,6 +40,14 @@ class BeliefReady:
 
 
 @dataclass(frozen=True, slots=True)
+class BeliefFailed:
+    """The belief about an emitter, of the bearings with these ids, could not be computed."""
+
+    bearing_ids: tuple[str, ...]
+    emitter_id: str
+
+
+@dataclass(frozen=True, slots=True)
 class SearchOrdered:
     """An operator's command. objections: what forbids it, found beforehand (an area that cannot be searched from here).
     held: every craft of the mission hovers in hold."""
@@ -72,4 +80,14 @@ class Reviewed:
     fact: ReviewFact
 
 
-SearchInput = Edited | PreflightDone | BearingsArrived | BeliefReady | SearchOrdered | NotStored | SearchOver | Reviewed
+SearchInput = (
+    Edited
+    | PreflightDone
+    | BearingsArrived
+    | BeliefReady
+    | BeliefFailed
+    | SearchOrdered
+    | NotStored
+    | SearchOver
+    | Reviewed
+)

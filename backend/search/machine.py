@@ -38,6 +38,7 @@ from backend.reasons.refused import Refused
 from backend.search.effects import Record, Refuse, SearchEffect, SearchElsewhere, UpdateBelief
 from backend.search.inputs import (
     BearingsArrived,
+    BeliefFailed,
     BeliefReady,
     Edited,
     NotStored,
@@ -97,6 +98,9 @@ def _take(step: SearchStep, given: SearchInput) -> None:
             _arrived(step, facts)
         case BeliefReady():
             _belief(step, given)
+        case BeliefFailed(emitter_id=emitter_id):
+            if state.stage == "open" and _awaits(state, emitter_id, given.bearing_ids):
+                alert(step, "failure", "warning", search.BeliefBroke(emitter_id))
         case SearchOrdered():
             _ordered(step, given)
         case NotStored(detail=detail):
@@ -138,11 +142,18 @@ def _reviewed(step: SearchStep, fact: ReviewFact) -> None:
 
 
 def _belief(step: SearchStep, given: BeliefReady) -> None:
-    emitter = step.state.emitters.get(given.fact.emitter_id)
-    if emitter is None or given.bearing_ids != step.state.behind(emitter.emitter_id) or emitter.belief_current:
+    if not _awaits(step.state, given.fact.emitter_id, given.bearing_ids):
         return
     step.record(given.fact)
+    if step.state.beliefs_current:
+        clear_alerts(step, "failure")
     doubt_headings(step, given.fact)
+
+
+def _awaits(state: SearchState, emitter_id: str, bearing_ids: tuple[str, ...]) -> bool:
+    """Whether a belief from these bearings is the one that is waited for."""
+    emitter = state.emitters.get(emitter_id)
+    return emitter is not None and not emitter.belief_current and bearing_ids == state.behind(emitter_id)
 
 
 def doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
@@ -275,7 +286,7 @@ def _over(step: SearchStep, given: SearchOver) -> None:
     outcome, reason = given.outcome, given.because
     if outcome is None:
         outcome, reason = _verdict(state, given.because)
-    clear_alerts(step, "storage", "console")
+    clear_alerts(step, "storage", "console", "failure")
     began = step.at_s if state.started_at_s is None else state.started_at_s
     until = state.localized_at_s if outcome == "localized" and state.localized_at_s is not None else step.at_s
     step.record(MissionEnded(outcome=outcome, reason=reason, mission_time_s=max(0.0, until - began)))

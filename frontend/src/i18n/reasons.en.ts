@@ -1658,6 +1658,10 @@ export const reasonsEn: ReasonTable = {
     text: "All bearings are turned by about {bias_deg} ± {std_error_deg}; the belief takes that into account.",
     remedy: "Check compass and antenna mounting before the next flight.",
   },
+  belief_broke: {
+    text: "Updating the belief about {emitter_id} failed inside Crossfix: no next place is planned.",
+    remedy: "Leave out the bearing that came last, or order the return.",
+  },
   localized: {
     text: "Localized: the expected error is below the threshold.",
     remedy: "",

@@ -30,7 +30,16 @@ from backend.mission.machine import transition
 from backend.mission.state import MissionState, fold
 from backend.reasons.search import Localized
 from backend.search.effects import Record
-from backend.search.inputs import BearingsArrived, BeliefReady, Edited, NotStored, PreflightDone, SearchOver
+from backend.search.inputs import (
+    BearingsArrived,
+    BeliefFailed,
+    BeliefReady,
+    Edited,
+    NotStored,
+    PreflightDone,
+    SearchOver,
+)
+from backend.spec import FIRST_EMITTER
 
 SEARCHES = (effects.TakeOff, effects.FlyTo, effects.Measure)
 
@@ -61,6 +70,7 @@ def every_input(state: MissionState) -> list[Input]:
         belief_ready(search),
         belief_ready(search, localized=True),
         BeliefReady(("stale",), belief(1)),
+        BeliefFailed(search.behind(FIRST_EMITTER), FIRST_EMITTER),
         NotStored("a number is missing"),
         SearchOver(Localized(), "failed"),
         ServerCameBack(),

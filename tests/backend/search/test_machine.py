@@ -32,10 +32,11 @@ from backend.events import (
     RecordingImported,
 )
 from backend.reasons import NoLongerLocalized, NotLocalized, flight, refusals
-from backend.reasons.search import HeadingsAskew, Localized, LocalizedAgainst
+from backend.reasons.search import BeliefBroke, HeadingsAskew, Localized, LocalizedAgainst
 from backend.search.effects import SearchEffect, SearchElsewhere, UpdateBelief
 from backend.search.inputs import (
     BearingsArrived,
+    BeliefFailed,
     BeliefReady,
     Edited,
     NotStored,
@@ -75,6 +76,9 @@ def every_input(state: SearchState) -> list[SearchInput]:
         BeliefReady(ids, belief(len(ids), localized=True)),
         BeliefReady(("stale",), belief(1)),
         BeliefReady((), belief(0, emitter_id="nobody")),
+        BeliefFailed(ids, FIRST_EMITTER),
+        BeliefFailed(("stale",), FIRST_EMITTER),
+        BeliefFailed((), "nobody"),
         *(SearchOrdered("anna", order) for order in orders),
         *(SearchOrdered("anna", order, objections=(VETO,)) for order in orders),
         *(SearchOrdered("anna", order, held=False) for order in orders),
@@ -276,6 +280,19 @@ def test_what_can_never_be_stored_is_an_alert_of_an_open_search() -> None:
         walk.give(NotStored("a number is missing"))
         expected = [flight.NotStored("a number is missing")] if stage == "open" else []
         assert [alert.reason for alert in walk.state.open_alerts] == expected
+
+
+def test_a_belief_that_cannot_be_computed_is_an_alert_until_there_is_one() -> None:
+    for stage in STAGES:
+        walk = SearchWalk().to(stage)
+        walk.arrive(bearing(1, source=PERSON))
+        walk.give(BeliefFailed(("stale",), FIRST_EMITTER))
+        assert walk.state.open_alerts == ()
+        walk.give(BeliefFailed(walk.state.behind(FIRST_EMITTER), FIRST_EMITTER))
+        expected = [("failure", BeliefBroke(FIRST_EMITTER))] if stage == "open" else []
+        assert [(alert.topic, alert.reason) for alert in walk.state.open_alerts] == expected
+        walk.believe()
+        assert walk.state.open_alerts == ()
 
 
 def ended(walk: SearchWalk) -> MissionEnded:

@@ -72,6 +72,10 @@ export const flight = {
     remedy: "Es bleibt neben der Warteschlange des Journals liegen; der Flug geht weiter.",
   },
 
+  belief_broke: {
+    text: "Das Erneuern der Karte von {emitter_id} ist in Crossfix gescheitert: Kein nächster Ort wird geplant.",
+    remedy: "Die letzte Peilung weglassen, oder die Rückkehr anordnen.",
+  },
   headings_askew: {
     text: "Alle Peilungen scheinen um denselben Winkel falsch zu sein, etwa {offset_deg} ± {std_error_deg}: Der gefundene Ort kann falsch sein.",
     remedy: "Kompass und Befestigung der Antenne prüfen; ein einzelner falscher Ort kann ebenso aussehen.",
