@@ -66,23 +66,19 @@ browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
 test: ## everything CI runs
-	$(call step,1/6,packages of Python into .venv; those of the page,a minute the first time)
-	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse setup-dev frontend/node_modules/.installed PIP_COMPILES=--no-compile
-	$(call step,2/6,style; types; imports; schemas; figures; the tests of the page,three minutes)
-	@$(MAKE) --no-print-directory check
-	$(call step,3/6,the page and the planner's machine code,half a minute the first time)
-	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse build kernel
-	$(call step,4/6,unit tests,six minutes and a half)
+	$(call step,1/4,packages; style; types; imports; schemas; figures; the page and its tests; the planner's machine code,four minutes the first time)
+	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page build kernel PIP_COMPILES=--no-compile
+	$(call step,2/4,unit tests,six minutes and a half)
 	@$(MAKE) --no-print-directory unit
-	$(call step,5/6,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
+	$(call step,3/4,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
 	@$(MAKE) --no-print-directory system
-	$(call step,6/6,what a user does on the page; in Chromium,five minutes)
+	$(call step,4/4,what a user does on the page; in Chromium,five minutes)
 	@$(MAKE) --no-print-directory stories
 
-check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
+check: ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
 	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page
 
-check-python:
+check-python: setup-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
@@ -95,7 +91,7 @@ check-python:
 	$(BIN)/python -m docs.drawing --check
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 
-check-page:
+check-page: frontend/node_modules/.installed
 	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
