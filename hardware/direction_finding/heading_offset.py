@@ -117,27 +117,30 @@ def _likeliest(
 
     free = np.column_stack([np.ones((len(x), 2)), with_offset])
     value, residual, weight = look(x)
-    damping, climbing = np.full(len(x), 1e-3), np.full(len(x), True)
+    damping: NDArray[np.float64] = np.full(len(x), 1e-3)
+    climbing: NDArray[np.bool_] = np.full(len(x), True)
     for _ in range(_STEPS):
         by = slopes(x) * free[:, None, :]
-        information = np.einsum("mki,mk,mkj->mij", by, weight, by)
-        diagonal = np.einsum("mii->mi", information)
+        information: NDArray[np.float64] = np.einsum("mki,mk,mkj->mij", by, weight, by)
+        diagonal: NDArray[np.float64] = np.einsum("mii->mi", information)
         damped: NDArray[np.float64] = (
             information + np.eye(3) * (damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
         )
         uphill: NDArray[np.float64] = np.einsum("mki,mk->mi", by, weight * residual)
-        tried = x + np.linalg.solve(damped, uphill[..., None])[..., 0]
+        tried: NDArray[np.float64] = x + np.linalg.solve(damped, uphill[..., None])[..., 0]
         there = look(tried)
         risen = there[0] - value
         better = climbing & (risen >= 0.0)
-        x = np.where(better[:, None], tried, x)
-        value = np.where(better, there[0], value)
-        residual, weight = (
-            np.where(better[:, None], new, old) for new, old in ((there[1], residual), (there[2], weight))
-        )
-        damping = np.where(better, np.maximum(damping / 5.0, 1e-9), damping * 10.0)
+        x, value = _rows(better, tried, x), _rows(better, there[0], value)
+        residual, weight = _rows(better, there[1], residual), _rows(better, there[2], weight)
+        damping = _rows(better, np.maximum(damping / 5.0, 1e-9), damping * 10.0)
         climbing &= ~(better & (risen < _SETTLED))
         if not climbing.any():
             break
     by = slopes(x)
     return _Fits(x, value, np.einsum("mki,mk,mkj->mij", by, weight, by))
+
+
+def _rows(which: NDArray[np.bool_], new: NDArray[np.float64], old: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Those of `new` where `which` says so, else those of `old`."""
+    return np.where(which.reshape(-1, *(1,) * (old.ndim - 1)), new, old)
