@@ -65,6 +65,7 @@ WANTED = (
     Wanted(17, "truth_beyond", "`crossfix study truth`, each row: error beyond 3 x stated", "%", at_most=0.5),
     Wanted(17, "truth_learned", "time against a search told the true errors, after flights", "%", at_most=5.0),
     Wanted(17, "truth_right", "mean time with a right compass, after flights", "s", at_most=160.0),
+    Wanted(17, "demo_time", "demo, whose compass is right: mean time until localized", "s", at_most=160.0),
     Wanted(17, "truth_claimed", "`crossfix study truth`, each row: missions that claim", "%", at_least=98.0),
     # Flying
     Wanted(6, "abort", "abort, request to vehicle command, p99, 50 viewers and 5 stalled", "ms", at_most=100.0),
