@@ -44,7 +44,11 @@ def edges(region: Region) -> tuple[FloatArray, FloatArray]:
     """Start and end points (m, 2) of every edge of every ring."""
     if not region:
         return _EMPTY, _EMPTY
-    return np.concatenate(region), np.concatenate([np.roll(ring, -1, axis=0) for ring in region])
+    corners = np.concatenate(region)
+    lasts = np.cumsum([len(ring) for ring in region]) - 1
+    following = np.arange(1, len(corners) + 1)
+    following[lasts] = np.concatenate([[0], lasts[:-1] + 1])
+    return corners, corners[following]
 
 
 def contains(region: Region, points: FloatArray) -> BoolArray:

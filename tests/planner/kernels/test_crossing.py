@@ -11,6 +11,12 @@ SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
 
 place = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 places = st.lists(place, min_size=1, max_size=4).map(np.array)
+exact_place = st.tuples(st.integers(-9, 9), st.integers(-9, 9))
+many_rings = st.lists(
+    st.lists(exact_place, min_size=3, max_size=9, unique=True).map(lambda p: np.array(p, float)),
+    min_size=8,
+    max_size=20,
+)
 rings = st.lists(place, min_size=3, max_size=12, unique=True).map(np.array)
 
 
@@ -32,6 +38,14 @@ def test_each_pair_is_judged_as_shapely_does(starts, ends, ring, other):
                 assert judged == FREE
             if any(clearly_crosses(line, edge) for edge in borders):
                 assert judged == CROSSES
+
+
+@given(st.lists(exact_place, min_size=1, max_size=60).map(lambda p: np.array(p, float)), many_rings)
+def test_many_edges_find_what_each_finds_alone(ends, rings):
+    """Whole metres: the same numbers whichever end an edge begins at. With many ends the nearest are asked first."""
+    sides = [np.stack(e) for ring in rings for e in zip(ring, np.roll(ring, -1, axis=0), strict=True)]
+    alone = np.max([meetings(ends[:3], ends, (side,)) for side in sides], axis=0)
+    assert (meetings(ends[:3], ends, tuple(rings)) == alone).all()
 
 
 def test_flying_through_two_corners_touches_but_does_not_cross():
