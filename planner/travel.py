@@ -7,17 +7,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planner.airspace import may_fly
 from planner.geometry import edges, signed_area
-from planner.kernels.crossing import CROSSES, TOUCHES, meetings
+from planner.kernels.crossing import CROSSES, FREE, TOUCHES, meetings
 from planner.reasons import NoPlaceToFly, NoWay
 from planner.types import BoolArray, FloatArray, PlannerError, Problem, Region
 
+if TYPE_CHECKING:  # takes a while to load: only where there is something to fly around
+    from scipy.sparse import csr_array
+
 CLEARANCE = 1.0
+SAME_PLACE = 1e-8
+"""m. Nodes so near to each other, as of an area that is given twice, are not flown between."""
 
 _KEPT = 4
 """Areas whose graph, and lattices whose distances, are kept: they stay the same for a mission and take a while."""
@@ -27,14 +33,14 @@ _KEPT = 4
 class VisibilityGraph:
     """What may not be crossed, and the corners to fly around. barriers: rings. nodes: (n, 2) m.
 
-    distances: (n, n) m along free ways, infinite where there is none. predecessors: (n, n) nodes before the last on
-    these ways, negative for none.
+    flights: (n, n) m of the free straight flights between nodes; None without nodes. Of thousands of corners few see
+    each other, and the shortest ways are looked for when asked from somewhere: all of them would take seconds, and
+    hundreds of megabytes.
     """
 
     barriers: Region
     nodes: FloatArray
-    distances: FloatArray
-    predecessors: NDArray[np.int32]
+    flights: csr_array | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,22 +69,26 @@ def _visibility_graph(airspace: _Airspace) -> VisibilityGraph:
     corners = [_corners(ring, side) for ring in barriers for side in (1.0, -1.0)]
     nodes = np.concatenate(corners) if corners else np.empty((0, 2))
     nodes = nodes[may_fly(problem, nodes)] if len(nodes) else nodes
-    lengths = _lengths(problem, barriers, nodes, nodes)
-    return VisibilityGraph(barriers, nodes, *_shortest_ways(lengths))
+    return VisibilityGraph(barriers, nodes, _flights(problem, barriers, nodes) if len(nodes) else None)
+
+
+def _flights(problem: Problem, barriers: Region, nodes: FloatArray) -> csr_array:
+    from scipy.sparse import csr_array
+
+    a, b = np.nonzero(_free(problem, barriers, nodes, nodes))
+    lengths = np.hypot(*(nodes[a] - nodes[b]).T)
+    apart = lengths > SAME_PLACE
+    return csr_array((lengths[apart], (a[apart], b[apart])), shape=(len(nodes), len(nodes)))
 
 
 def travel_distances(problem: Problem, graph: VisibilityGraph, start: FloatArray, ends: FloatArray) -> FloatArray:
     """(n,) m of the shortest free way from `start` (2,) to each of `ends` (n, 2); infinite where there is none."""
     start, ends = _freed(problem, graph, np.asarray(start, dtype=float)), np.asarray(ends, dtype=float).reshape(-1, 2)
     direct = _lengths(problem, graph.barriers, start[None], ends)[0]
-    if len(graph.nodes) == 0 or np.isfinite(direct).all():
+    if graph.flights is None or np.isfinite(direct).all():
         return direct
-    first = _lengths(problem, graph.barriers, start[None], graph.nodes)[0]
+    to_node, _ = _ways_from(graph.flights, _lengths(problem, graph.barriers, start[None], graph.nodes)[0])
     last = _lengths(problem, graph.barriers, graph.nodes, ends)
-    seen = np.isfinite(first)
-    if not seen.any():
-        return direct
-    to_node = (first[seen, None] + graph.distances[seen]).min(axis=0)
     return np.minimum(direct, (to_node[:, None] + last).min(axis=0))
 
 
@@ -93,20 +103,15 @@ def travel_path(problem: Problem, start: FloatArray, end: FloatArray) -> FloatAr
     way = [start] if (freed == start).all() else [start, freed]
     if np.isfinite(_lengths(problem, graph.barriers, freed[None], end[None])[0, 0]):
         return np.array([*way, end])
-    if len(graph.nodes) == 0:
+    if graph.flights is None:
         raise _no_way(start, end)
-    first = _lengths(problem, graph.barriers, freed[None], graph.nodes)[0]
-    last = _lengths(problem, graph.barriers, graph.nodes, end[None])[:, 0]
-    # of thousands of corners few are seen from either end: the others' ways are infinite
-    firsts, lasts = np.flatnonzero(np.isfinite(first)), np.flatnonzero(np.isfinite(last))
-    total = first[firsts, None] + graph.distances[np.ix_(firsts, lasts)] + last[lasts]
+    to_node, before = _ways_from(graph.flights, _lengths(problem, graph.barriers, freed[None], graph.nodes)[0])
+    total = to_node + _lengths(problem, graph.barriers, graph.nodes, end[None])[:, 0]
     if not np.isfinite(total).any():
         raise _no_way(start, end)
-    row, column = np.unravel_index(int(np.argmin(total)), total.shape)
-    a, b = firsts[row], lasts[column]
-    chain = [int(b)]
-    while chain[-1] != a:
-        chain.append(int(graph.predecessors[a, chain[-1]]))
+    chain = [int(np.argmin(total))]
+    while before[chain[-1]] < len(graph.nodes):
+        chain.append(int(before[chain[-1]]))
     return np.array([*way, *graph.nodes[chain[::-1]], end])
 
 
@@ -147,25 +152,40 @@ def _lattice_distances(airspace: _Airspace, packed: bytes) -> FloatArray:
     problem, places, graph = airspace.problem, np.frombuffer(packed).reshape(-1, 2), _visibility_graph(airspace)
     direct = _lengths(problem, graph.barriers, places, places)
     to_node = _lengths(problem, graph.barriers, places, graph.nodes)
-    from_node, around = np.full_like(to_node, np.inf), np.full_like(direct, np.inf)
+    if graph.flights is None:
+        return direct
+    around = np.full_like(direct, np.inf)
+    from_place = np.array([_ways_from(graph.flights, first)[0] for first in to_node])
     for k in range(len(graph.nodes)):
-        np.minimum(from_node, to_node[:, k, None] + graph.distances[k], out=from_node)
-    for k in range(len(graph.nodes)):
-        np.minimum(around, from_node[:, k, None] + to_node[:, k], out=around)
+        np.minimum(around, from_place[:, k, None] + to_node[:, k], out=around)
     return np.minimum(direct, around)
 
 
-def _shortest_ways(lengths: FloatArray) -> tuple[FloatArray, NDArray[np.int32]]:
-    """All shortest ways between (n, n) nodes: lengths, infinite without a way, and predecessors, negative for none."""
-    if len(lengths) == 0:
-        return lengths, np.empty((0, 0), dtype=np.int32)
-    from scipy.sparse.csgraph import shortest_path  # takes a while to load: only where there is something to fly around
+def _ways_from(flights: csr_array, first: FloatArray) -> tuple[FloatArray, NDArray[np.int32]]:
+    """The shortest ways from a place from which the nodes are `first` (n,) m away, infinite where they are not seen.
 
-    return shortest_path(np.where(np.isfinite(lengths), lengths, 0.0), return_predecessors=True)
+    (n,) m to each node, infinite without a way, and (n,) the nodes before them: n, the place itself, for the first.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
+    n, seen = len(first), np.flatnonzero(np.isfinite(first))
+    # the place is node n, which no flight leads to: one row more
+    lengths, to = np.concatenate([flights.data, first[seen]]), np.concatenate([flights.indices, seen])
+    rows = np.append(flights.indptr, len(lengths))
+    onward = csr_array((lengths, to, rows), shape=(n + 1, n + 1))
+    distances, before = dijkstra(onward, indices=np.array([n]), return_predecessors=True)
+    return distances[0, :n], before[0, :n]
 
 
 def _lengths(problem: Problem, barriers: Region, starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """(n, m) m of straight flights, infinite where a barrier is crossed.
+    """(n, m) m of straight flights, infinite where a barrier is crossed."""
+    free = _free(problem, barriers, starts, ends)
+    return np.where(free, np.hypot(*(starts[:, None] - ends).transpose(2, 0, 1)), np.inf)
+
+
+def _free(problem: Problem, barriers: Region, starts: FloatArray, ends: FloatArray) -> BoolArray:
+    """(n, m) bool: whether a straight flight crosses no barrier.
 
     One that only touches barriers (a corner, along a side) is held against what may be flown between the touches.
     """
@@ -176,9 +196,8 @@ def _lengths(problem: Problem, barriers: Region, starts: FloatArray, ends: Float
         t = (a - p) @ along / max(float(along @ along), 1e-300)
         stops = np.unique(np.concatenate([[0.0, 1.0], t[(t > 0) & (t < 1)]]))
         middles = p + (0.5 * (stops[1:] + stops[:-1]))[:, None] * along
-        if not _near_free(problem, middles).all():
-            met[i, j] = CROSSES
-    return np.where(met == CROSSES, np.inf, np.hypot(*(starts[:, None] - ends).transpose(2, 0, 1)))
+        met[i, j] = FREE if _near_free(problem, middles).all() else CROSSES
+    return met == FREE
 
 
 def _near_free(problem: Problem, places: FloatArray, step: float = 1e-6) -> BoolArray:

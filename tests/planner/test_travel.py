@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from refusals import refusing
+from scipy.sparse.csgraph import floyd_warshall
 
 from planner.reasons import NoWay
 from planner.travel import lattice_distances, straight_suffices, travel_distances, travel_path, visibility_graph
@@ -96,6 +97,32 @@ def test_lattice_distances_are_the_ways_of_each_pair():
     assert matrix == pytest.approx(matrix.T)
     for start, row in zip(places, matrix, strict=True):
         assert row == pytest.approx(travel_distances(blocked, graph, start, places))
+
+
+sizes = st.tuples(st.integers(0, 9), st.integers(0, 9), st.integers(1, 5), st.integers(1, 5))
+blocks = st.lists(sizes.map(lambda s: 10.0 * rectangle(s[0], s[1], s[0] + s[2], s[1] + s[3])), min_size=1, max_size=6)
+
+
+@given(blocks, st.data())
+def test_ways_around_areas_that_touch_overlap_or_enclose_are_the_shortest_over_corners(no_fly, data):
+    """Against all ways between all corners at once, by Floyd and Warshall."""
+    blocked = problem(FENCE, tuple(no_fly))
+    graph = visibility_graph(blocked)
+    assume(len(graph.nodes) > 0)
+    assert graph.flights is not None
+    k = data.draw(st.integers(0, len(graph.nodes) - 1))
+    apart = np.hypot(*(graph.nodes - graph.nodes[k]).T) > 1e-6
+    distances = travel_distances(blocked, graph, graph.nodes[k], graph.nodes)
+    assert distances[apart] == pytest.approx(floyd_warshall(graph.flights)[k, apart], abs=1e-9)
+
+
+def test_a_way_from_a_corner_that_is_flown_around_starts_there():
+    blocked = problem(FENCE, (rectangle(40, 20, 60, 95),))
+    corner = visibility_graph(blocked).nodes[0]
+    there = np.array([100.0, 100.0]) - corner
+    path = travel_path(blocked, corner, there)
+    assert length(path) == pytest.approx(travel_distances(blocked, visibility_graph(blocked), corner, there[None])[0])
+    assert path[0].tolist() == corner.tolist()
 
 
 def test_only_convex_and_empty_air_is_straight():
