@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.geometry import contains
+from planner.geometry import contains, contains_each
 from planner.types import BoolArray, FloatArray, Problem
 
 
@@ -13,6 +13,4 @@ def may_fly(problem: Problem, places: FloatArray) -> BoolArray:
     allowed = np.ones(len(places), dtype=bool)
     if problem.flight_area is not None:
         allowed &= contains(problem.flight_area, places)
-    for ring in problem.no_fly:
-        allowed &= ~contains((ring,), places)
-    return allowed
+    return allowed & ~contains_each(problem.no_fly, places).any(axis=0)

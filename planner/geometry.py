@@ -5,7 +5,7 @@ Frame: local ENU metres. A `Ring` is (n, 2), not closed; a `Region` combines rin
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from planner.reasons import AreaCrossesItself, UnusableArea
 from planner.types import BoolArray, FloatArray, PlannerError, Region, Ring
 
 _EMPTY = np.empty((0, 2))
+
+AT_ONCE = 2**17
+"""Pairs of a point and an edge: a megabyte an array."""
 
 
 def signed_area(ring: Ring) -> float:
@@ -53,13 +56,32 @@ def edges(region: Region) -> tuple[FloatArray, FloatArray]:
 
 def contains(region: Region, points: FloatArray) -> BoolArray:
     """Even-odd test. points: (n, 2). Returns (n,) bool; points on the border may fall on either side."""
+    return np.count_nonzero(_east_of(*edges(region), points), axis=1) % 2 == 1
+
+
+def contains_each(rings: Sequence[Ring], points: FloatArray) -> BoolArray:
+    """(rings, n) bool: as `contains`, of every ring alone."""
     points = np.asarray(points, dtype=float).reshape(-1, 2)
-    start, end = edges(region)
+    inside = np.zeros((len(rings), len(points)), dtype=bool)
+    if len(rings) == 0:
+        return inside
+    start, end = edges(tuple(rings))
+    firsts = np.cumsum([0, *(len(ring) for ring in rings[:-1])])
+    step = max(1, AT_ONCE // len(start))
+    for k in range(0, len(points), step):
+        counts = np.add.reduceat(_east_of(start, end, points[k : k + step]), firsts, axis=1, dtype=np.int64)
+        inside[:, k : k + step] = counts.T % 2 == 1
+    return inside
+
+
+def _east_of(start: FloatArray, end: FloatArray, points: FloatArray) -> BoolArray:
+    """(n, m) bool: which of (m, 2) edges a ray from each of (n, 2) points to the east crosses."""
+    points = np.asarray(points, dtype=float).reshape(-1, 2)
     x, y = points[:, :1], points[:, 1:]
     spans = (start[:, 1] > y) != (end[:, 1] > y)
     rise = np.where(end[:, 1] == start[:, 1], 1.0, end[:, 1] - start[:, 1])
     crossing = start[:, 0] + (y - start[:, 1]) / rise * (end[:, 0] - start[:, 0])
-    return np.count_nonzero(spans & (x < crossing), axis=1) % 2 == 1
+    return spans & (x < crossing)
 
 
 def clip_half_plane(ring: Ring, point: FloatArray, normal: FloatArray) -> Ring:

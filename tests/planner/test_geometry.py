@@ -7,12 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from refusals import refusing
 
+from planner import geometry
 from planner.geometry import (
     bounds,
     cells_touching,
     clip_convex,
     clip_wedge,
     contains,
+    contains_each,
     convex_hull,
     distance_to_convex,
     region_area,
@@ -75,6 +77,20 @@ def test_wedge_of_nearly_zero_width_leaves_the_line_of_sight():
 
 def test_wedge_that_looks_away_leaves_nothing():
     assert len(clip_wedge(SQUARE, -5.0, 5.0, np.pi, 0.1)) == 0
+
+
+@given(st.lists(stars | points, max_size=6), st.lists(st.tuples(coordinate, coordinate), max_size=9).map(np.array))
+def test_every_ring_alone_contains_what_it_does_among_others(rings, places):
+    assert contains_each(rings, places).shape == (len(rings), len(places))
+    for ring, inside in zip(rings, contains_each(rings, places), strict=True):
+        assert (contains((ring,), places) == inside).all()
+
+
+def test_more_places_than_are_asked_at_once_are_all_answered(monkeypatch):
+    places = np.random.default_rng(1).uniform(-5, 15, (50, 2))
+    whole = contains_each((SQUARE, HOLE), places)
+    monkeypatch.setattr(geometry, "AT_ONCE", 3 * 8)
+    assert (contains_each((SQUARE, HOLE), places) == whole).all()
 
 
 @given(stars, st.lists(st.tuples(coordinate, coordinate), min_size=1, max_size=20).map(np.array))
