@@ -5,6 +5,7 @@ The graph's nodes are the corners of no-fly areas and of the flight area, moved 
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -75,6 +76,7 @@ def _visibility_graph(airspace: _Airspace) -> VisibilityGraph:
 def _flights(problem: Problem, barriers: Region, nodes: FloatArray) -> csr_array:
     from scipy.sparse import csr_array
 
+    importlib.import_module("scipy.sparse.csgraph")  # now, in a thread: `_ways_from` is asked on the event loop, too
     a, b = np.nonzero(_free(problem, barriers, nodes, nodes))
     lengths = np.hypot(*(nodes[a] - nodes[b]).T)
     apart = lengths > SAME_PLACE
@@ -101,7 +103,9 @@ def travel_path(problem: Problem, start: FloatArray, end: FloatArray) -> FloatAr
     graph = visibility_graph(problem)
     freed = _freed(problem, graph, start)
     way = [start] if (freed == start).all() else [start, freed]
-    if np.isfinite(_lengths(problem, graph.barriers, freed[None], end[None])[0, 0]):
+    # what is compiled is not asked without need: while anything is compiled, a first question waits for that to end
+    straight = straight_suffices(problem) and bool(may_fly(problem, end[None])[0])
+    if straight or np.isfinite(_lengths(problem, graph.barriers, freed[None], end[None])[0, 0]):
         return np.array([*way, end])
     if graph.flights is None:
         raise _no_way(start, end)
@@ -190,8 +194,8 @@ def _free(problem: Problem, barriers: Region, starts: FloatArray, ends: FloatArr
     One that only touches barriers (a corner, along a side) is held against what may be flown between the touches.
     """
     met = meetings(starts, ends, barriers)
-    a, _ = edges(barriers)
     for i, j in zip(*np.nonzero(met == TOUCHES), strict=True):
+        a, _ = edges(barriers)
         p, along = starts[i], ends[j] - starts[i]
         t = (a - p) @ along / max(float(along @ along), 1e-300)
         stops = np.unique(np.concatenate([[0.0, 1.0], t[(t > 0) & (t < 1)]]))

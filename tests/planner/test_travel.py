@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from refusals import refusing
 from scipy.sparse.csgraph import floyd_warshall
 
+from planner import travel
 from planner.reasons import NoWay
 from planner.travel import lattice_distances, straight_suffices, travel_distances, travel_path, visibility_graph
 from planner.types import LinearMotion, Problem
@@ -123,6 +124,15 @@ def test_a_way_from_a_corner_that_is_flown_around_starts_there():
     path = travel_path(blocked, corner, there)
     assert length(path) == pytest.approx(travel_distances(blocked, visibility_graph(blocked), corner, there[None])[0])
     assert path[0].tolist() == corner.tolist()
+
+
+def test_where_straight_flights_do_nothing_compiled_is_asked(monkeypatch):
+    """While beliefs are compiled in the background, a first question to a kernel would hold up who asks."""
+    monkeypatch.setattr(travel, "meetings", None)
+    assert way(problem(FENCE), (10, 10), (90, 80)).tolist() == [[10, 10], [90, 80]]
+    assert way(problem(), (10, 10), (290, 80)).tolist() == [[10, 10], [290, 80]]
+    outside = travel.way_back(problem(FENCE), np.array([-20.0, 50.0]), np.array([100.5, 50.0]), 6.0)
+    assert outside[1:].tolist() == [[1.0, 50.0], [99.0, 50.0], [100.5, 50.0]]
 
 
 def test_only_convex_and_empty_air_is_straight():
