@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from shapely import Point, Polygon, union_all
+from shapely import Point, Polygon, disjoint_subset_union_all
 from shapely.geometry.base import BaseGeometry
 
 from hardware.autopilot.dialect import Dialect, OwnFence
@@ -82,11 +82,11 @@ def _room(zones: Sequence[FenceZone], frame: LocalFrame, any_inclusion: bool) ->
         return None
     room: BaseGeometry = Point(0.0, 0.0).buffer(_EVERYWHERE_M)
     if inside and any_inclusion:
-        room = union_all(inside)
+        room = disjoint_subset_union_all(inside)
     else:
         for shape in inside:
             room = room.intersection(shape)
-    return room.difference(union_all(outside)) if outside else room
+    return room.difference(disjoint_subset_union_all(outside)) if outside else room
 
 
 _EVERYWHERE_M = 100_000.0
