@@ -39,12 +39,14 @@ def mission_nets(limits: Limits) -> MissionNets:
     room = _outwards(outline)
     frame = limits.frame
     no_fly = [part for zone in limits.no_fly for part in _polygons(zone) if part.intersects(room)]
-    kept_out = [(part.exterior, False) for part in no_fly]
+    needed, net, kept_out = _rings(outline), _rings(room), [(part.exterior, False) for part in no_fly]
+    zones = _zones([*needed, *net, *kept_out], frame)
+    not_there = zones[len(needed) + len(net) :]
     ceiling_m = limits.maximum_altitude_relative_m
     return MissionNets(
         home=frame.origin,
-        needed=_zones([*_rings(outline), *kept_out], frame),
-        zones=_zones([*_rings(room), *kept_out], frame),
+        needed=(*zones[: len(needed)], *not_there),
+        zones=zones[len(needed) :],
         ceiling_m=ceiling_m,
         net_ceiling_m=ceiling_m + CEILING_MARGIN_M,
     )
