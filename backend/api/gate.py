@@ -1,5 +1,5 @@
 """Nobody passes but by the table of permissions: who asks is found out, and every call is looked up, before its body is
-read. What is not in the table is refused.
+read, and whoever gives an order again when its body has come. What is not in the table is refused.
 
 A page that is signed in must say where it comes from with everything that changes something (and with each websocket):
 besides SameSite cookies that keeps other sites from acting through it. A websocket ends with the session or the token
@@ -23,7 +23,7 @@ from starlette.routing import BaseRoute, compile_path
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from backend.api.guard import SAFE_METHODS, refuse
-from backend.api.problems import retry_after
+from backend.api.problems import ApiProblem, retry_after
 from backend.auth.access import Access
 from backend.auth.keeping import Denied
 from backend.auth.principal import Principal, local_person
@@ -126,7 +126,8 @@ class Gate:
             await self._watched(access, visitor, scope, receive, send)
         else:
             try:
-                await self._app(scope, receive, _noting(access, scope, name, visitor.principal, address, need, send))
+                arriving = _permitted_still(access, scope, name, need, receive)
+                await self._app(scope, arriving, _noting(access, scope, name, visitor.principal, address, need, send))
             except Exception:
                 if need.audited:
                     _note(access, scope, name, visitor.principal, address, 500, detail=dict(state["audit"]))
@@ -185,6 +186,30 @@ async def _over(access: Access, session: Entry[Session] | None, ended: asyncio.E
                 session.ended.set()
             else:
                 access.sessions.seen(session)
+
+
+def _permitted_still(access: Access, scope: Scope, name: str, need: Need, receive: Receive) -> Receive:
+    """Raises ApiProblem, where the body is read, for whoever may not make the call any more when its end has come: they
+    can be signed out, shut out or given another role while they hold it back."""
+    if need.anyone or scope["method"] in SAFE_METHODS:
+        return receive
+    whole = False
+
+    async def still() -> Message:
+        nonlocal whole
+        message = await receive()
+        if whole or message["type"] != "http.request" or message.get("more_body", False):
+            return message
+        whole = True
+        try:
+            visitor = _visitor(access, scope, address_of(scope))
+            _permit(access, visitor, scope, name, need)
+        except Denied as error:
+            raise ApiProblem(error.status, carried(error.reason), headers=retry_after(error.reason)) from None
+        scope["state"]["principal"] = visitor.principal
+        return message
+
+    return still
 
 
 def address_of(scope: Scope) -> str:

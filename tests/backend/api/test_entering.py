@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -25,6 +25,7 @@ from backend.auth.access import Access, Visit
 from backend.auth.audit import AuditLog
 from backend.auth.invitations import Invitations
 from backend.auth.passwords import Passwords
+from backend.events import CommandAccepted
 from backend.live.protocol import LiveProtocol
 from backend.settings import Settings
 
@@ -243,6 +244,52 @@ async def test_a_session_that_is_ended_elsewhere_closes_its_live_channel(shared:
         with pytest.raises(websockets.InvalidStatus) as gone:
             await websockets.connect(f"ws://{host}/api/live", origin=own, additional_headers=cookie)
         assert gone.value.response.status_code == 401
+
+
+Deed = Callable[[Access, str], Awaitable[object]]
+MEANWHILE: dict[str, Deed] = {
+    "signed out": lambda access, who: access.sessions.end_all(who),
+    "shut out": lambda access, who: access.change_person(who, "pilot", admin=False, active=False),
+    "viewer": lambda access, who: access.change_person(who, "viewer", admin=False, active=True),
+    "operator": lambda access, who: access.change_person(who, "operator", admin=False, active=True),
+    "nothing": lambda access, who: asyncio.sleep(0),
+}
+
+
+@pytest.mark.parametrize(
+    ("meanwhile", "status", "role"),
+    [
+        ("signed out", 401, None),
+        ("shut out", 401, None),
+        ("viewer", 403, None),
+        ("operator", 200, "operator"),
+        ("nothing", 200, "pilot"),
+    ],
+)
+async def test_an_order_that_was_held_back_counts_as_its_giver_may_when_it_is_whole(
+    shared: FastAPI, access: Access, meanwhile: str, status: int, role: str | None
+) -> None:
+    """Whoever is about to lose a right keeps no orders in store by half a request."""
+    async with visiting(shared) as admin, visiting(shared) as client:
+        await first_admin(admin, access)
+        area = {"type": "Polygon", "coordinates": [[[7.2, 50.62], [7.21, 50.62], [7.21, 50.63], [7.2, 50.62]]]}
+        mission = (await admin.post("/api/missions", json={"name": "m", "area": area})).json()["mission_id"]
+        link, _ = await access.invitations.make("pilot", False, 60.0, access.people.by_name[0].person_id)
+        client.cookies.set(PLAIN_COOKIE, await access.accept_invitation(link, "Bo", PASSWORD, Visit("b", "")))
+        person = next(one.person_id for one in access.people.by_name if one.name == "Bo")
+        body = json.dumps({"command_id": str(uuid4()), "command": {"kind": "take_control"}}).encode()
+
+        async def held_back() -> AsyncIterator[bytes]:
+            yield body[:5]
+            await MEANWHILE[meanwhile](access, person)
+            yield body[5:]
+
+        kind = {"content-type": "application/json"}
+        reply = await client.post(f"/api/missions/{mission}/commands", content=held_back(), headers=kind)
+    assert reply.status_code == status
+    recorded = await shared.state.services.journal.read(mission)
+    authors = [r.event.author for r in recorded if isinstance(r.event, CommandAccepted)]
+    assert [None if author is None else author.role for author in authors] == ([] if role is None else [role])
 
 
 async def test_whoever_has_many_commands_refused_waits_but_never_with_what_is_safe(
