@@ -27,7 +27,7 @@ from backend.api.problems import ApiProblem, retry_after
 from backend.auth.access import Access
 from backend.auth.keeping import Denied
 from backend.auth.principal import Principal, local_person
-from backend.auth.registry import Session
+from backend.auth.registry import MachineToken, Session
 from backend.auth.sessions import Entry
 from backend.permissions import BEFORE_PEOPLE, ENDPOINTS, Need
 from backend.reasons import Reason, carried
@@ -83,7 +83,7 @@ class Visitor:
 
     principal: Principal | None
     session: Entry[Session] | None = None
-    ended: asyncio.Event | None = None
+    token: Entry[MachineToken] | None = None
 
 
 class Gate:
@@ -146,8 +146,8 @@ class Gate:
 
     async def _watched(self, access: Access, visitor: Visitor, scope: Scope, receive: Receive, send: Send) -> None:
         """The websocket until it or what opened it ends."""
-        ended = visitor.session.ended if visitor.session is not None else visitor.ended
-        if ended is None:
+        entry = visitor.session or visitor.token
+        if entry is None:
             await self._app(scope, receive, send)
             return
         opened = False
@@ -158,7 +158,7 @@ class Gate:
             await send(message)
 
         serving = asyncio.ensure_future(self._app(scope, receive, noticing))
-        over = asyncio.create_task(_over(access, visitor.session, ended))
+        over = asyncio.create_task(_over(access, visitor, entry.ended))
         try:
             await asyncio.wait({serving, over}, return_when=asyncio.FIRST_COMPLETED)
         finally:
@@ -166,26 +166,29 @@ class Gate:
             if not serving.done():
                 serving.cancel()
             results = await asyncio.gather(serving, over, return_exceptions=True)
-        if opened and ended.is_set():
+        if opened and entry.ended.is_set():
             await send({"type": "websocket.close", "code": SIGNED_OUT, "reason": "signed out"})
         fault = results[0]
         if isinstance(fault, Exception):
             raise fault
 
 
-async def _over(access: Access, session: Entry[Session] | None, ended: asyncio.Event) -> None:
+async def _over(access: Access, visitor: Visitor, ended: asyncio.Event) -> None:
     """Returns when the session or token has ended. A page that watches is in use."""
     while not ended.is_set():
         try:
             async with asyncio.timeout(LOOK_EVERY_S):
                 await ended.wait()
         except TimeoutError:
-            if session is None:
-                continue
-            if not access.sessions.lasts(session):
-                session.ended.set()
-            else:
-                access.sessions.seen(session)
+            if not _lasts(access, visitor):
+                ended.set()
+            elif visitor.session is not None:
+                access.sessions.seen(visitor.session)
+
+
+def _lasts(access: Access, visitor: Visitor) -> bool:
+    session_lasts = visitor.session is None or access.sessions.lasts(visitor.session)
+    return session_lasts and (visitor.token is None or access.machines.lasts(visitor.token))
 
 
 def _permitted_still(access: Access, scope: Scope, name: str, need: Need, receive: Receive) -> Receive:
@@ -247,7 +250,7 @@ def _named(access: Access, scope: Scope, address: str) -> Visitor:
     scheme, _, token = headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
         machine = access.machines.found(token.strip(), address)
-        return Visitor(None) if machine is None else Visitor(machine[0], ended=machine[1])
+        return Visitor(None) if machine is None else Visitor(machine[0], token=machine[1])
     secret = cookie_of(scope, headers)
     found = None if secret is None else access.signed_in(secret, address)
     return Visitor(None) if found is None else Visitor(found[0], session=found[1])

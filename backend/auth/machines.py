@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import hmac
 from collections.abc import Iterable
 
@@ -23,6 +22,7 @@ class Machines:
         self._limits = limits
         self._payload_tokens = tuple(payload_tokens)
         self._entries: dict[str, Entry[MachineToken]] = {}
+        self._revoked: set[str] = set()
 
     def load(self, rows: Iterable[MachineToken]) -> None:
         """As the last run left them."""
@@ -31,16 +31,24 @@ class Machines:
             made_s = now_s - max(0, wall_us - row.made_at_us) / 1e6
             self._entries[row.secret_hash] = Entry(row, made_s, made_s, made_s)
 
-    def found(self, secret: str, address: str) -> tuple[Principal, asyncio.Event] | None:
-        """By its token. None: unknown. Raises Denied 429 when too many unknown ones came from there; a known one always
-        passes, it cannot be guessed."""
-        entry = self._entries.get(digest(secret))
-        if entry is not None and not entry.ended.is_set() and self._lasts(entry):
-            return Principal(entry.row.name, scope=entry.row.scope, address=address), entry.ended
+    def found(self, secret: str, address: str) -> tuple[Principal, Entry[MachineToken] | None] | None:
+        """By its token; without an entry it is one of the settings. None: unknown, or it lasts no longer. Raises Denied
+        429 when too many unknown ones came from there; a known one always passes, it cannot be guessed."""
+        hashed = digest(secret)
+        entry = self._entries.get(hashed)
+        if entry is not None and self.lasts(entry):
+            return Principal(entry.row.name, scope=entry.row.scope, address=address), entry
         if any(hmac.compare_digest(secret.encode(), known.encode()) for known in self._payload_tokens):
-            return Principal("payload", scope="payload", address=address), asyncio.Event()
-        self._limits.take_try(address)
+            return Principal("payload", scope="payload", address=address), None
+        if entry is None and hashed not in self._revoked:  # a program that was not told guesses nothing
+            self._limits.take_try(address)
         return None
+
+    def lasts(self, entry: Entry[MachineToken]) -> bool:
+        """Not revoked, not older than it was made for."""
+        row, age_s = entry.row, self._keeping.monotonic_s() - entry.made_s
+        expired = row.expires_at_us is not None and age_s >= (row.expires_at_us - row.made_at_us) / 1e6
+        return not entry.ended.is_set() and not expired
 
     @property
     def tokens(self) -> list[MachineToken]:
@@ -64,11 +72,6 @@ class Machines:
         if found is None:
             raise Denied(404, NothingThere("token", token_id))
         found.ended.set()
+        self._revoked.add(found.row.secret_hash)
         await self._keeping.change(gone=(found.row,))
         self._entries.pop(found.row.secret_hash, None)
-
-    def _lasts(self, entry: Entry[MachineToken]) -> bool:
-        row = entry.row
-        if row.expires_at_us is None:
-            return True
-        return self._keeping.monotonic_s() - entry.made_s < (row.expires_at_us - row.made_at_us) / 1e6

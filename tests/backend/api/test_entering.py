@@ -18,6 +18,7 @@ import websockets
 from argon2 import PasswordHasher
 from fastapi import FastAPI
 
+from backend.api import gate
 from backend.api.application import make_application
 from backend.api.gate import PLAIN_COOKIE, SECURE_COOKIE, SIGNED_OUT
 from backend.api.services import Services
@@ -244,6 +245,29 @@ async def test_a_session_that_is_ended_elsewhere_closes_its_live_channel(shared:
         with pytest.raises(websockets.InvalidStatus) as gone:
             await websockets.connect(f"ws://{host}/api/live", origin=own, additional_headers=cookie)
         assert gone.value.response.status_code == 401
+
+
+async def test_a_token_that_runs_out_closes_the_channel_that_it_opened(
+    shared: FastAPI, access: Access, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gate, "LOOK_EVERY_S", 0.05)
+    await access.make_first_admin(access.begin_first_admin() or "", "Ada", PASSWORD, Visit("a", ""))
+    lasting, _ = await access.machines.make("box", "payload", 3600.0, "x")
+    short, _ = await access.machines.make("old box", "payload", 1.0, "x")
+    async with on_a_socket(shared) as host:
+        url = f"ws://{host}/api/payload"
+        async with (
+            websockets.connect(url, additional_headers={"authorization": f"Bearer {lasting}"}) as stays,
+            websockets.connect(url, additional_headers={"authorization": f"Bearer {short}"}) as goes,
+        ):
+            async with asyncio.timeout(60):
+                with pytest.raises(websockets.ConnectionClosed) as closed:
+                    await heard_until_closed(goes)
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == SIGNED_OUT
+            with pytest.raises(TimeoutError):
+                async with asyncio.timeout(0.2):
+                    await heard_until_closed(stays)
 
 
 Deed = Callable[[Access, str], Awaitable[object]]

@@ -256,8 +256,9 @@ async def test_a_token_lasts_as_long_as_it_was_made_for_and_a_revoked_one_not_at
     found = access.machines.found(secret, "a")
     assert found is not None
     assert found[0].scope == "exports"
+    assert found[1] is not None
     await access.machines.revoke(made.token_id)
-    assert found[1].is_set()
+    assert found[1].ended.is_set()
     assert access.machines.found(secret, "a") is None
     secret, _ = await access.machines.make("box", "exports", 3600, "x")
     clocks.go(3600)
@@ -275,6 +276,19 @@ async def test_guessing_tokens_is_slowed_down_and_the_right_one_always_enters(ac
     with refusing(reasons.TooManyTries, Denied):
         access.machines.found("another guess", "10.0.0.9")
     assert access.machines.found(secret, "10.0.0.9") is not None
+
+
+async def test_a_program_that_still_shows_its_ended_token_takes_nobodys_tries(access: Access, clocks: Clocks) -> None:
+    """It guesses nothing, and people enter from its address, too."""
+    await with_admin(access)
+    revoked, made = await access.machines.make("box", "payload", None, "x")
+    expired, _ = await access.machines.make("box", "exports", 3600, "x")
+    await access.machines.revoke(made.token_id)
+    clocks.go(3600)
+    for _ in range(50):
+        assert access.machines.found(revoked, "10.0.0.9") is None
+        assert access.machines.found(expired, "10.0.0.9") is None
+    assert who(access, await access.sign_in("Ada", PASSWORD, Visit("10.0.0.9", "laptop"))) == "Ada"
 
 
 async def test_a_database_that_is_away_lets_everybody_inside_go_on(
