@@ -32,6 +32,7 @@ from backend.auth.sessions import Entry
 from backend.permissions import BEFORE_PEOPLE, ENDPOINTS, Need
 from backend.reasons import Reason, carried
 from backend.reasons.access import BehindProxy, CallNotListed, FirstAdminNeeded, OriginMissing, SignInNeeded
+from backend.reasons.request import UnknownToken
 from backend.wire.problem import problem
 
 log = logging.getLogger("crossfix.access")
@@ -234,7 +235,7 @@ def _permit(access: Access, visitor: Visitor, scope: Scope, name: str, need: Nee
     if principal is None:
         if need.anyone:
             return
-        raise Denied(401, SignInNeeded())
+        raise Denied(401, SignInNeeded() if _token_of(headers) is None else UnknownToken())
     if principal.local and not need.anyone and any(header in headers for header in FORWARDED):
         raise Denied(403, BehindProxy())
     refused: Reason | None = principal.refused(need)
@@ -247,13 +248,18 @@ def _permit(access: Access, visitor: Visitor, scope: Scope, name: str, need: Nee
 
 def _named(access: Access, scope: Scope, address: str) -> Visitor:
     headers = Headers(scope=scope)
-    scheme, _, token = headers.get("authorization", "").partition(" ")
-    if scheme.lower() == "bearer":
-        machine = access.machines.found(token.strip(), address)
+    token = _token_of(headers)
+    if token is not None:
+        machine = access.machines.found(token, address)
         return Visitor(None) if machine is None else Visitor(machine[0], token=machine[1])
     secret = cookie_of(scope, headers)
     found = None if secret is None else access.signed_in(secret, address)
     return Visitor(None) if found is None else Visitor(found[0], session=found[1])
+
+
+def _token_of(headers: Headers) -> str | None:
+    scheme, _, token = headers.get("authorization", "").partition(" ")
+    return token.strip() if scheme.lower() == "bearer" else None
 
 
 def encrypted(scope: Scope) -> bool:

@@ -286,8 +286,8 @@ class NoPayloadExpected:
 class UnknownToken:
     code: Literal["unknown_token"] = "unknown_token"
     english: ClassVar[Words] = Words(
-        "The server does not know this token.",
-        "Give the payload one of the tokens in CROSSFIX_PAYLOAD_TOKENS.",
+        "The server does not know this token, or it lasts no longer.",
+        "Ask an admin for a new one, or take one of those in CROSSFIX_PAYLOAD_TOKENS for a payload.",
     )
 
 

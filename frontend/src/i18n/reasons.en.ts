@@ -1519,8 +1519,8 @@ export const reasonsEn: ReasonTable = {
     remedy: "Start it with CROSSFIX_PAYLOAD_TOKENS, a list of the tokens its payloads may show.",
   },
   unknown_token: {
-    text: "The server does not know this token.",
-    remedy: "Give the payload one of the tokens in CROSSFIX_PAYLOAD_TOKENS.",
+    text: "The server does not know this token, or it lasts no longer.",
+    remedy: "Ask an admin for a new one, or take one of those in CROSSFIX_PAYLOAD_TOKENS for a payload.",
   },
   too_many_scenes: {
     text: "Too many 3D views are open.",

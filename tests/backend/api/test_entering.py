@@ -270,6 +270,16 @@ async def test_a_token_that_runs_out_closes_the_channel_that_it_opened(
                     await heard_until_closed(stays)
 
 
+async def test_a_program_is_told_of_its_token_and_not_to_sign_in(shared: FastAPI, access: Access) -> None:
+    async with visiting(shared) as client:
+        await first_admin(client, access)
+    async with visiting(shared) as client:
+        nobody = await client.get("/api/missions")
+        program = await client.get("/api/missions", headers={"authorization": "Bearer one that was revoked"})
+    assert (nobody.status_code, reason(nobody)) == (401, "sign_in_needed")
+    assert (program.status_code, reason(program)) == (401, "unknown_token")
+
+
 Deed = Callable[[Access, str], Awaitable[object]]
 MEANWHILE: dict[str, Deed] = {
     "signed out": lambda access, who: access.sessions.end_all(who),

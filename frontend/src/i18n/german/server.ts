@@ -78,8 +78,8 @@ export const server = {
     remedy: "Ihn mit CROSSFIX_PAYLOAD_TOKENS starten, einer Liste der Tokens, die seine Nutzlasten zeigen dürfen.",
   },
   unknown_token: {
-    text: "Der Server kennt dieses Token nicht.",
-    remedy: "Der Nutzlast eines der Tokens aus CROSSFIX_PAYLOAD_TOKENS geben.",
+    text: "Der Server kennt dieses Token nicht, oder es gilt nicht mehr.",
+    remedy: "Vom Admin ein neues geben lassen oder für eine Nutzlast eines aus CROSSFIX_PAYLOAD_TOKENS nehmen.",
   },
   too_many_scenes: { text: "Zu viele 3D-Ansichten sind offen.", remedy: "Eine in einem anderen Tab schließen." },
   scene_silent: { text: "Der 3D-Server antwortet nicht.", remedy: "Die Ansicht neu laden." },
