@@ -21,7 +21,21 @@ from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import FORM, Event, MissionBroughtIn, MissionRestored, Recorded
+from backend.events import (
+    FORM,
+    BearingExcluded,
+    BearingIncluded,
+    BearingMeasured,
+    BeliefUpdated,
+    Event,
+    HeardOnTheWay,
+    MissionBroughtIn,
+    MissionDrafted,
+    MissionEdited,
+    MissionRestored,
+    Recorded,
+    SweepRejected,
+)
 from backend.mission.state import fold as fold_mission
 from backend.ports import TrackPoint
 from backend.reasons.request import BundleFileWrong, BundleUnreadable
@@ -58,6 +72,8 @@ MOST_TOLD, LONGEST_MODE, LONGEST_TAG = 1e6, 40, 200
 a point: it does not."""
 WRITE_S = 10.0
 AT_ONCE = 500
+
+OfEmitter = BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected | HeardOnTheWay
 
 SWEEP = TypeAdapter(SweepEntry)
 TRACK = TypeAdapter(TrackEntry)
@@ -212,9 +228,22 @@ def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
     if len(recorded) > MOST_EVENTS:
         raise _refused("too_large")
     in_order = all(r.seq == seq and r.mission_id == mission_id for seq, r in enumerate(recorded, start=1))
-    if not in_order or not _is_id(mission_id) or not all(_in_time(r.at_utc) for r in recorded):
+    sound = in_order and all(_in_time(r.at_utc) for r in recorded) and _of_emitters_looked_for(recorded)
+    if not sound or not _is_id(mission_id):
         raise _wrong("not_exported", JOURNAL)
     return recorded, today["tracks"]
+
+
+def _of_emitters_looked_for(recorded: Sequence[Recorded]) -> bool:
+    """Of any other no server records a bearing, and no export finds its frequency."""
+    emitters: frozenset[str] = frozenset()
+    for record in recorded:
+        fact = record.event
+        if isinstance(fact, MissionDrafted | MissionEdited):
+            emitters = frozenset(emitter.emitter_id for emitter in fact.spec.emitters)
+        elif isinstance(fact, OfEmitter) and fact.emitter_id not in emitters:
+            return False
+    return True
 
 
 def _in_time(at_utc: datetime) -> bool:

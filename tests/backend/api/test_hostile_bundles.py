@@ -77,6 +77,16 @@ def still_flying(text: bytes) -> bytes:
     return json.dumps(told | {"events": told["events"][:end]}).encode()
 
 
+def of_an_emitter_that_nobody_looks_for(kind: str) -> Callable[[bytes], bytes]:
+    def change(text: bytes) -> bytes:
+        told = json.loads(text)
+        fact = next(record["event"] for record in told["events"] if record["event"]["kind"] == kind)
+        fact["emitter_id"] = "emitter-9"
+        return json.dumps(told).encode()
+
+    return changed("mission.json", change)
+
+
 def sweeps_with(**changes: Any) -> Callable[[bytes], bytes]:
     def change(text: bytes) -> bytes:
         told = json.loads(text.split(b"\n")[0])
@@ -183,6 +193,8 @@ def test_a_path_with_wrong_values_is_refused(wrong):
         (changed("mission.json", of_two), "not_exported"),
         (changed("mission.json", elsewhere_named), "not_exported"),
         (changed("mission.json", still_flying), "under_way"),
+        (of_an_emitter_that_nobody_looks_for("bearing_measured"), "not_exported"),
+        (of_an_emitter_that_nobody_looks_for("belief_updated"), "not_exported"),
         (changed("bundle.json", other_schema), "not_exported"),
         (changed("bundle.json", later_schema), "later"),
         (changed("bundle.json", lambda text: b"\xff"), "damaged"),
