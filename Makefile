@@ -101,7 +101,7 @@ kernel-of-plans: setup-dev
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
 
 kernel-of-beliefs: setup-dev
-	$(BIN)/python -c "from backend.wiring import compile_beliefs; compile_beliefs()"
+	$(BIN)/python -c "from threading import Event; from backend.wiring import compile_beliefs; compile_beliefs(Event())"
 
 # By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
 # tests/conftest.py holds the marks to the folders, so that no run has to import the others' tests.

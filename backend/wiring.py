@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
+import threading
 import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
@@ -103,18 +104,21 @@ def _warming() -> asyncio.Task[None]:
     return asyncio.create_task(asyncio.to_thread(_warm_up))
 
 
-def compile_beliefs() -> None:
-    """Every kind of belief that a flight may ask for."""
+def compile_beliefs(until: threading.Event) -> None:
+    """Every kind of belief that a flight may ask for, unless `until` is set meanwhile: on a new machine that takes a
+    minute, and no thread can be interrupted."""
     home = Place(lat=0.0, lon=0.0)
-    fold_first_beliefs(in_a_strip(suggested_mission(home), home), home)
+    for _ in fold_first_beliefs(in_a_strip(suggested_mission(home), home), home):
+        if until.is_set():
+            return
     gc.freeze()
 
 
-async def _then_beliefs(warming: asyncio.Task[None]) -> None:
+async def _then_beliefs(warming: asyncio.Task[None], until: threading.Event) -> None:
     """What a flight believes is compiled while the server answers already."""
     await asyncio.gather(warming, return_exceptions=True)
     try:
-        await asyncio.to_thread(compile_beliefs)
+        await asyncio.to_thread(compile_beliefs, until)
     except Exception:
         log.exception("beliefs are not compiled: the first of each kind will be in flight")
 
@@ -217,6 +221,7 @@ async def open_simulation(
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock
     warming: asyncio.Task[None] | None = None
+    ended = threading.Event()
     async with open_journal(settings, lambda: clock.now()) as journal, open_access(settings) as access:
         unfinished = await journal.unfinished()
         if first is None:
@@ -268,7 +273,7 @@ async def open_simulation(
                 warming = _warming()
             else:
                 await warming
-            warming = asyncio.create_task(_then_beliefs(warming))
+            warming = asyncio.create_task(_then_beliefs(warming, ended))
             async with _bearings_by_udp(settings, missions, clock) as feed:
                 services = Services(
                     missions, journal, hub, settings, clock.now, payload,
@@ -283,6 +288,7 @@ async def open_simulation(
             in_flight = missions is not None and missions.flights.active is not None
             if missions is not None:
                 await missions.shut_down()
+            ended.set()
             if warming is not None:
                 await asyncio.gather(warming, return_exceptions=True)
             if simulated is not None and not (leave_flying and in_flight):

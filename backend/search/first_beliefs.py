@@ -7,6 +7,7 @@ Machine code is made for kinds of arrays, whatever their size: all is folded ove
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from backend.events import FIRST_CRAFT, CraftSource
 from backend.search.localization import Localization, localization
@@ -51,16 +52,20 @@ def in_a_strip(mission: MissionSpec, home: Place) -> MissionSpec:
     return mission.model_copy(update={"area": strip, "planner": planner})
 
 
-def fold_first_beliefs(mission: MissionSpec, home: Place) -> None:
+def fold_first_beliefs(mission: MissionSpec, home: Place) -> Iterator[None]:
     """Of an emitter that stands still, before and after a bearing, with and without a leg; of two that share their
-    errors; of one that moves. Heavy: call it off the event loop."""
+    errors; of one that moves. Heavy, each step of it: take them off the event loop."""
     task = localization(mission, home)
     if isinstance(task.prior, JointBelief):
         heard_on_the_way(task.prior, (STRETCH,))
+        yield
         known = _judged(task)
+        yield
         if isinstance(known, JointBelief):
             known = heard_on_the_way(known, (STRETCH,))
+            yield
             with_shared_errors((known, known))
+            yield
     (emitter, *_) = mission.emitters
     moves = emitter.model_copy(update={"movement": MovementSpec(kind="walking")})
     _judged(localization(mission.model_copy(update={"emitters": [moves]}), home))

@@ -4,7 +4,9 @@ import asyncio
 import json
 import logging
 import socket
+import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -70,3 +72,18 @@ async def test_a_bearing_by_udp_is_as_old_on_the_missions_clock_as_in_the_world(
             mission_id, report = await asyncio.wait_for(taken, 30.0)
     assert mission_id == "flying"
     assert clock.now() - report.taken_at_s == pytest.approx(60.0, abs=20.0)
+
+
+def test_a_server_that_ends_compiles_no_further_belief(monkeypatch: pytest.MonkeyPatch) -> None:
+    folded, ended = list[int](), threading.Event()
+
+    def fold(*_: object) -> Iterator[None]:
+        for number in range(4):
+            folded.append(number)
+            if number == 1:
+                ended.set()
+            yield
+
+    monkeypatch.setattr(wiring, "fold_first_beliefs", fold)
+    wiring.compile_beliefs(ended)
+    assert folded == [0, 1]

@@ -26,7 +26,7 @@ def compiled():
     return {(one.py_func.__name__, signature) for one in found.values() for signature in one.signatures}
 
 place = Place(0.0, 0.0)
-fold_first_beliefs(in_a_strip(suggested_mission(place), place), place)
+assert len(list(fold_first_beliefs(in_a_strip(suggested_mission(place), place), place))) == 4
 before = compiled()
 taken = facts.bearing(1).model_copy(update={"place": ground.HOME, "taken_at_s": 1e9})
 emitters = [EmitterSpec(), EmitterSpec(emitter_id="emitter-2", frequency_hz=869.5e6)]
