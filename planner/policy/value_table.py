@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +41,8 @@ STEP = 1.0 / 32.0
 """s, what the shipped tables are rounded to; 16 bits of it reach 34 minutes."""
 SHIPPED_SIGMAS_DEG = (3, 7, 12)
 """What a mission starts with, and what a sensor turns out to be: a compass that is known to be right, or not known."""
+SHIPPED_TIMES_S = (16, 30)
+"""Of a bearing: the suggested mission's, and the fielded system's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,26 +94,28 @@ def key_of(problem: Problem) -> ProgramKey:
     )
 
 
-SHIPPED_KEY = ProgramKey(
-    sigma=math.radians(7.0),
-    threshold=10.0,
-    measurement_time=30.0,
-    motion=LinearConstantMotion(speed=7.0, constant=11.2),
-    standoff=50.0,
-)
-"""The suggested mission: the numbers of the fielded system (Tables 6.1-6.3) and its fitted movement (6.4.3)."""
+def shipped_key(sigma_deg: float, measurement_time_s: float) -> ProgramKey:
+    """Of the fielded system (Tables 6.1-6.3) with its fitted movement (6.4.3), but for its sensor."""
+    return ProgramKey(
+        sigma=math.radians(sigma_deg),
+        threshold=10.0,
+        measurement_time=float(measurement_time_s),
+        motion=LinearConstantMotion(speed=7.0, constant=11.2),
+        standoff=50.0,
+    )
 
 
-def shipped_key(sigma_deg: float) -> ProgramKey:
-    """Of the suggested mission with another sensor."""
-    return replace(SHIPPED_KEY, sigma=math.radians(sigma_deg))
+def _shipped_keys() -> dict[str, ProgramKey]:
+    """By their tables' names in the file."""
+    sensors = product(SHIPPED_SIGMAS_DEG, SHIPPED_TIMES_S)
+    return {f"{degrees} deg, {seconds} s": shipped_key(degrees, seconds) for degrees, seconds in sensors}
 
 
 @cache
 def shipped() -> dict[ProgramKey, ProgramTable]:
     """The tables that are part of the package, so that no plan of the usual mission waits for one."""
     with np.load(SHIPPED, allow_pickle=False) as stored:
-        steps = {shipped_key(degrees): stored[str(degrees)] for degrees in SHIPPED_SIGMAS_DEG}
+        steps = {key: stored[name] for name, key in _shipped_keys().items()}
     return {key: ProgramTable(key, STEP * values.astype(np.float64)) for key, values in steps.items()}
 
 
@@ -191,5 +196,5 @@ def motion_numbers(motion: Motion) -> tuple[bool, float, float, float]:
 
 
 if __name__ == "__main__":
-    tables = {str(degrees): rounded(compute(shipped_key(degrees))) for degrees in SHIPPED_SIGMAS_DEG}
+    tables = {name: rounded(compute(key)) for name, key in _shipped_keys().items()}
     np.savez_compressed(SHIPPED, **tables)  # type: ignore[arg-type]  # numpy takes any names

@@ -11,13 +11,14 @@ interface Preset {
   kind: "carrier" | "pulsed";
   sigmaDeg: number;
   measurementS: number;
+  turnRateDegS: number;
 }
 
 /** A tag pulses about once a second, so a sweep must be slow; a beacon's homing signal and interference are steady. */
 const presets: Record<PresetName, Preset> = {
-  wildlife: { frequencyHz: 150_000_000, kind: "pulsed", sigmaDeg: 9, measurementS: 45 },
-  beacon: { frequencyHz: 121_500_000, kind: "carrier", sigmaDeg: 7, measurementS: 30 },
-  interference: { frequencyHz: 1_575_420_000, kind: "carrier", sigmaDeg: 6, measurementS: 30 },
+  wildlife: { frequencyHz: 150_000_000, kind: "pulsed", sigmaDeg: 9, measurementS: 45, turnRateDegS: 8 },
+  beacon: { frequencyHz: 121_500_000, kind: "carrier", sigmaDeg: 7, measurementS: 16, turnRateDegS: 30 },
+  interference: { frequencyHz: 1_575_420_000, kind: "carrier", sigmaDeg: 6, measurementS: 16, turnRateDegS: 30 },
 };
 
 export const presetNames = Object.keys(presets) as PresetName[];
@@ -33,7 +34,7 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
       ...spec.sensor,
       sigma_deg: preset.sigmaDeg,
       measurement_time_s: preset.measurementS,
-      turn_rate_deg_s: Math.max(5, 360 / preset.measurementS),
+      turn_rate_deg_s: preset.turnRateDegS,
     },
   };
 }

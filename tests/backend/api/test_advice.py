@@ -91,7 +91,7 @@ async def test_who_hops_is_sent_inside_the_fence_and_told_up_turn_and_down(clien
         told = reply.json()
         east, north = FRAME.to_enu(Place(told["place"]["lat"], told["place"]["lon"]))
         assert (abs(east) <= 110.0, -10.0 <= north <= 210.0) == (True, True), (east, north)
-        assert told["hop"] == {"altitude_m": 60.0, "up_s": 24.0, "turn_s": 30.0, "down_s": 40.0}
+        assert told["hop"] == {"altitude_m": 60.0, "up_s": 24.0, "turn_s": 16.0, "down_s": 40.0}
         here = (east, north)
         await hear(client, mission, number, here)
     by_hand = await client.post(f"/api/missions/{mission}/advice", json={"place": place(*here)})

@@ -12,7 +12,7 @@ from backend.search.planning import next_place_together
 from backend.spec import SensorSpec
 from hardware.readings import Place
 from planner.options import CROSSFIX, FIELD
-from planner.policy.value_table import SHIPPED_KEY, key_of, program_for, shipped
+from planner.policy.value_table import key_of, program_for, shipped
 from planner.reasons import PlannedMeanwhile
 
 HOME = Place(lat=50.6, lon=7.2)
@@ -30,8 +30,7 @@ def test_a_specification_that_names_no_planner_means_the_one_it_was_flown_with()
 
 def test_its_table_comes_with_the_package_so_that_no_first_plan_is_made_meanwhile():
     task = localization(suggested_mission(HOME), HOME)
-    assert key_of(task.problem) == SHIPPED_KEY
-    assert program_for(task.problem) is shipped()[SHIPPED_KEY]
+    assert program_for(task.problem) is shipped()[key_of(task.problem)]
     assert not isinstance(preview(task, HOME, threads=1).reason, PlannedMeanwhile)
 
 
