@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage check check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
+.PHONY: run test coverage check check-types check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
 
 # The tests start some two hundred servers and vehicles: where no bytecode is kept, each compiles every source again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -67,7 +67,7 @@ browser: ## Debian's Chromium, if there is none
 
 test: ## everything CI runs
 	$(call step,1/4,packages; style; types; imports; schemas; figures; the page and its tests; the planner's machine code,four minutes the first time)
-	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page build kernel PIP_COMPILES=--no-compile
+	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-types check-python check-page build kernel PIP_COMPILES=--no-compile
 	$(call step,2/4,unit tests,six minutes and a half)
 	@$(MAKE) --no-print-directory unit
 	$(call step,3/4,whole missions; nothing beside them since they wait for the wall's clock,five minutes)
@@ -76,13 +76,16 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory stories
 
 check: ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
-	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page
+	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-types check-python check-page
+
+# First and by itself: it takes as long as all else before the tests.
+check-types: setup-dev
+	$(BIN)/pyright --threads 2
 
 check-python: setup-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
-	$(BIN)/pyright --threads 2
 	$(BIN)/python -m backend.api.schema --check frontend/src/wire/openapi.json
 	$(BIN)/python -m backend.reasons.catalogue --check frontend/src/i18n/reasons.en.ts
 	$(BIN)/python -m tests.spoken --check tests/golden/reasons.json
