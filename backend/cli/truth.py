@@ -22,6 +22,8 @@ from planner.study.truth_planners import TruthPlanner, truth_planner
 
 HOME = Place(50.6234, 7.2046)
 """Anywhere: the worlds are flat."""
+MEASUREMENT_S = 30.0
+"""Of a bearing, as in the field scenario, so that times stay comparable with what is wanted of them."""
 MODELS: tuple[Model, ...] = ("joint", "independent")
 REMARK_EVERY = 50
 FIRST_LESSON = 1_000_000
@@ -116,7 +118,8 @@ def row_claims(
     mission = suggested_mission(HOME)
     prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
     task = localization(mission, HOME)
-    search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings, places)
+    problem = replace(task.problem, measurement_time=MEASUREMENT_S)
+    search = Search(problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings, places)
     if told and wanted is None:
         raise StudyError(f"{row}: --told goes with an emitter that stays where it is")
     if wanted is not None and told:
