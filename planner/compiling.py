@@ -44,6 +44,7 @@ COMPILED_IN = (
     "belief/compiled_on_the_way.py",
     "belief/compiled_rows.py",
     "belief/compiled_tables.py",
+    "belief/compiled_way_tables.py",
     "belief/estimate.py",
     "belief/grid.py",
     "compiling.py",

@@ -147,7 +147,8 @@ def worth_of(stretch: Stretch) -> float:
 
 def variance_of(gain_db: FloatArray) -> FloatArray:
     """dB^2, of a reading in a direction with this gain below the antenna's maximum."""
-    return LEAST_VARIANCE + (DB_PER_NEPER * SCATTERED) ** 2 * np.minimum(10.0 ** (-gain_db / 10.0), DEEPEST)
+    depth = 10.0 ** np.minimum(-gain_db / 10.0, math.log10(DEEPEST))
+    return LEAST_VARIANCE + (DB_PER_NEPER * SCATTERED) ** 2 * depth
 
 
 def log_ratio(x: FloatArray, y: FloatArray, found: Heard, bias: FloatArray, scale: FloatArray) -> FloatArray:

@@ -17,7 +17,7 @@ from planner.types import BoolArray, FloatArray
 FEW_CELLS = 3000
 """Grids of fewer are weighed cell by cell."""
 FEW_DEAR_CELLS = 700
-"""The same where stretches of way make each cell a hundred times as dear."""
+"""The same where stretches of way make each cell tens of times as dear."""
 WIDEST = 4
 """Cells along the side of the largest blocks: at least three lie across the 95 % region of a refined grid."""
 EVEN = 3e-3

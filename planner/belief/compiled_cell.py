@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.belief.compiled_on_the_way import SUMS, coarse_nodes, weigh_stretches
+from planner.belief.compiled_on_the_way import scratch_of, weigh_stretches
 from planner.belief.compiled_rows import copied, interpolated, largest, times, total, weighed, weighed_at_once
 from planner.belief.compiled_tables import RESCALED_EVERY, STEPS
 from planner.compiling import allocating, inlined, jit
@@ -57,7 +57,7 @@ def reached(x, y, known, past):
             node = int(np.floor(past[j]))
             if node + reach + 2 > 0 and node - reach < count:
                 low, high = min(low, max(0, node - reach)), max(high, min(count, node + reach + 2))
-    if len(known.on_way.heard.worth) > 0:
+    if len(known.on_way.x) > 0:
         return 0, count
     return (low, high) if low < high else (0, 0)
 
@@ -111,7 +111,7 @@ def _several_peaks(known, i, past, table, density):
 
 
 @inlined
-def of_cell(x, y, known, past, low, high, apart, table, density, sums):
+def of_cell(x, y, known, past, low, high, apart, table, density, way):
     """Weighs nodes low to high of table (k e, b) by all bearings and stretches, for the emitter at (x, y), as far as
     `reached` finds: all others have their prior times apart (k e,). Returns the logarithm taken out of both.
 
@@ -134,10 +134,9 @@ def of_cell(x, y, known, past, low, high, apart, table, density, sums):
         share = known.shares[1, r % rates]
         apart[r] *= share
         times(table[r, low:high], share)
-    if len(known.on_way.heard.worth) > 0:
+    if len(known.on_way.x) > 0:
         apart[:] = 0.0
-        way, scale, rate = known.on_way, known.scale, known.rate
-        log += weigh_stretches(x, y, way, known.bias, known.spacing, scale, rate, sums, density, table)
+        log += weigh_stretches(x, y, known.on_way, known.bias, known.spacing, known.rate, way, table)
     return log
 
 
@@ -153,13 +152,11 @@ def whole_of(known, low, high, apart, table):
 
 @allocating
 def scratch(known):
-    """past, apart, table, density and sums as `of_cell` takes them."""
-    count = len(known.bias)
-    sums = np.empty((SUMS, coarse_nodes(count, known.spacing)))
+    """past, apart, table, density and way as `of_cell` takes them."""
     return (
         np.empty(len(known.seen.angle)),
         np.empty(len(known.prior)),
         np.empty_like(known.prior),
-        np.empty(count),
-        sums,
+        np.empty(len(known.bias)),
+        scratch_of(len(known.bias), known.spacing, len(known.scale), len(known.rate)),
     )

@@ -152,21 +152,21 @@ def _entry_points(sources: int):
     @entry
     def log_evidence_of(x, y, known, found):
         _ = sources
-        past, apart, table, density, sums = scratch(known)
+        past, apart, table, density, way = scratch(known)
         for c in range(len(x)):
             low, high = reached(x[c], y[c], known, past)
-            log = of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            log = of_cell(x[c], y[c], known, past, low, high, apart, table, density, way)
             found[c] = log + np.log(whole_of(known, low, high, apart, table))
 
     @entry
     def shared_out_over(x, y, mass, known, found, mean):
         """found (k e, b): the sum over the cells of the nodes' shares in their mass. mean: (c,) bias of each cell."""
         _ = sources
-        past, apart, table, density, sums = scratch(known)
+        past, apart, table, density, way = scratch(known)
         alone = np.zeros(len(apart))
         for c in range(len(x)):
             low, high = reached(x[c], y[c], known, past)
-            of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            of_cell(x[c], y[c], known, past, low, high, apart, table, density, way)
             whole, bias = whole_of(known, low, high, apart, table), 0.0
             for r in range(len(apart)):
                 within_reach = known.moment[r, high] - known.moment[r, low]
@@ -183,11 +183,11 @@ def _entry_points(sources: int):
     @entry
     def evidence_of(x, y, known, out):
         _ = sources
-        past, apart, table, density, sums = scratch(known)
+        past, apart, table, density, way = scratch(known)
         rates = len(known.rate)
         for c in range(len(x)):
             low, high = reached(x[c], y[c], known, past)
-            log = of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            log = of_cell(x[c], y[c], known, past, low, high, apart, table, density, way)
             whole = whole_of(known, low, high, apart, table)
             out.log[c] = log + np.log(whole)
             out.bias[c] = 0.0
@@ -207,13 +207,13 @@ def _entry_points(sources: int):
         """found (k e, b): the sum over the cells, without a factor whose logarithm is returned. before: (c,) logarithm
         of each cell's weight."""
         _ = sources
-        past, apart, table, density, sums = scratch(known)
+        past, apart, table, density, way = scratch(known)
         alone = np.zeros(len(apart))
         found[:] = 0.0
         top = -np.inf
         for c in range(len(x)):
             low, high = reached(x[c], y[c], known, past)
-            log = before[c] + of_cell(x[c], y[c], known, past, low, high, apart, table, density, sums)
+            log = before[c] + of_cell(x[c], y[c], known, past, low, high, apart, table, density, way)
             if log > top:
                 factor = np.exp(top - log)
                 alone *= factor

@@ -1,69 +1,97 @@
 # pyright: standard
 """The fast twin of planner.on_the_way: what stretches of way say of one cell, for all biases of a source at once.
 
-The nodes of the bias are equally spaced, so the readings' directions in the antenna's table go on by the same step from
-node to node: tables in just these steps hold side by side what the nodes ask for. Bearings may ask for nodes far closer
-than a beam of tens of degrees does: a stretch, never sharper than a bearing, is weighed at every few of them, and its
-logarithm is linear between. With sigma 7 degrees and nodes 2 degrees apart that is good to 2^2 / (8 7^2), a hundredth
-a stretch; what the stretches of a mission add up to is in docs/truth.md.
+A stretch is looked up in its own table (compiled_way_tables.py). Bearings may ask for nodes of the bias far closer than
+a beam of tens of degrees does: stretches, never sharper than a bearing, are weighed at every few of them, all together,
+and the logarithm of what they say is linear between. How good that is stands in docs/truth.md.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from planner.belief.compiled_rows import mixed, summed
-from planner.compiling import jit
-from planner.on_the_way import DIRECTIONS, FREEDOM, NEAR_M, Heard, variance_of
+from planner.belief.compiled_rows import blended, blended_more, copied, largest, mixed, rooted, times, times_each
+from planner.belief.compiled_way_tables import ACROSS, ALONG, COLUMNS, NEAREST, PSI_STEP, TURN, middle_of, table_of
+from planner.compiling import allocating, jit
+from planner.on_the_way import LEAST_INDEPENDENT, NEAR_M, Heard, Stretch, heard, worth_of
 from planner.types import FloatArray
 
-PHASES = 8
-"""Steps of the tables from node to node: directions are good to half of one, an eighth of a degree."""
-FINE_ENOUGH = np.deg2rad(2.0)
+FINE_ENOUGH = np.deg2rad(1.0)
 RESCALED_EVERY = 16
 """Stretches: none multiplies by less than the rate of outliers, or by more than a bearing's peak."""
-LEAST_LOG = -200.0
-"""Of a root, so that none is 0, by which the next would be divided."""
-SUMS = 4
-"""Of weights, weighted residuals, their squares, and logarithms of variances."""
+LEAST = 1e-280
+"""Of what stretches say of a node, beside the best of them: none is 0, by which the next would be divided."""
 
 
 @jit
-def stride_of(spacing):
-    """How many nodes of the bias lie in one step at which stretches are weighed."""
-    return max(1, int(FINE_ENOUGH / spacing))
+def halvings_of(spacing):
+    """How often the step at which stretches are weighed is halved to the `spacing` of the nodes, rad."""
+    found = 0
+    while spacing * 2.0 ** (found + 1) <= FINE_ENOUGH:
+        found += 1
+    return found
 
 
 @jit
 def coarse_nodes(count, spacing):
     """How many of these steps hold `count` nodes, and one beyond."""
-    return (count - 1) // stride_of(spacing) + 2
+    return ((count - 1) >> halvings_of(spacing)) + 2
+
+
+class Scratch(NamedTuple):
+    """Of n nodes at which stretches are weighed. coarse: (k e, n); found: (k, n); root: (n,). rows: (k, m) of the m
+    columns of a table that they span."""
+
+    coarse: FloatArray
+    found: FloatArray
+    root: FloatArray
+    rows: NDArray[np.float32]
+
+
+@allocating
+def scratch_of(count, spacing, scales, rates):
+    """For `count` nodes of the bias, `spacing` rad apart."""
+    coarse = coarse_nodes(count, spacing)
+    columns = int((coarse - 1) * spacing * (1 << halvings_of(spacing)) / PSI_STEP) + 5
+    return Scratch(
+        np.empty((scales * rates, coarse)),
+        np.empty((scales, coarse)),
+        np.empty(coarse),
+        np.empty((scales, columns), dtype=np.float32),
+    )
 
 
 class OnTheWay(NamedTuple):
-    """heard: the stretches. fine: rad, from one direction of the table to the next. table: (k, PHASES, 4, m) 1 / v,
-    G / v, G^2 / v and log v of each stretch, [:, p, :, i] in the direction of PHASES i + p such steps, once around and
-    on as far as the bias reaches."""
+    """heard: the stretches. x, y: (k,) m, their middles; along: (2, k); reach: (k,) m, beyond which no place is near.
+    table: (k, ...) as compiled_way_tables.Table."""
 
     heard: Heard
-    fine: float
-    table: FloatArray
+    x: FloatArray
+    y: FloatArray
+    along: FloatArray
+    reach: FloatArray
+    table: NDArray[np.float32]
 
 
-def on_the_way(known: Heard, count: int, spacing: float) -> OnTheWay:
-    """For `count` nodes of the bias, `spacing` rad apart."""
-    fine = stride_of(spacing) * spacing / PHASES
-    columns = int(2.0 * np.pi / fine / PHASES) + 2 + coarse_nodes(count, spacing)
-    turns = np.arange(PHASES * columns) * fine / (2.0 * np.pi)
-    table = np.empty((len(known.worth), PHASES, 4, columns))
-    for k, tabulated in enumerate(known.gain):
-        gain = np.interp(turns, np.arange(DIRECTIONS) / DIRECTIONS, tabulated, period=1.0)
-        variance = variance_of(gain)
-        for j, told in enumerate((1.0 / variance, gain / variance, gain**2 / variance, np.log(variance))):
-            table[k, :, j] = told.reshape(columns, PHASES).T
-    return OnTheWay(known, fine, table)
+def on_the_way(stretches: Sequence[Stretch], scale: FloatArray) -> OnTheWay:
+    """Of one source, with these scales (s,) of its errors."""
+    kept = [one for one in stretches if worth_of(one) >= LEAST_INDEPENDENT]
+    middles = [middle_of(one) for one in kept]
+    table = np.empty((len(kept), ACROSS, ALONG, len(scale), COLUMNS), dtype=np.float32)
+    for out, one in zip(table, kept, strict=True):
+        out[:] = table_of(one, tuple(scale.tolist()))
+    return OnTheWay(
+        heard(kept, scale),
+        np.array([one.x for one in middles]),
+        np.array([one.y for one in middles]),
+        np.ascontiguousarray(np.array([one.along for one in middles]).reshape(-1, 2).T),
+        np.array([one.reach + NEAR_M for one in middles]),
+        table,
+    )
 
 
 @jit
@@ -75,19 +103,34 @@ def _near(x, y, heard, k):
 
 
 @jit
-def _summed(x, y, way, k, bias, sums):
-    """sums (SUMS, n) of the readings of stretch k at the coarse nodes, for the emitter at (x, y)."""
-    sums[:] = 0.0
-    heard, count = way.heard, sums.shape[1]
-    offset = heard.power[heard.first[k]]
-    for i in range(heard.first[k], heard.first[k + 1]):
-        off_x, off_y = x - heard.x[i], y - heard.y[i]
-        rest = heard.power[i] - offset + 10.0 * np.log10(off_x * off_x + off_y * off_y)
-        turns = (np.arctan2(off_y, off_x) - heard.front[i] + bias[0]) / (2.0 * np.pi)
-        step = int((turns - np.floor(turns)) * (2.0 * np.pi) / way.fine + 0.5)
-        at, told = step // PHASES, way.table[k, step % PHASES]
-        here = told[:, at : at + count]
-        summed(here[0], here[1], here[2], here[3], rest, sums)
+def _look_up(off_x, off_y, way, k, bias, step, rows, found):
+    """found (s, n): f / c of stretch k at the biases `bias` + n step, for the emitter at (off_x, off_y) m from its
+    middle. rows: (k, m) scratch, of as many columns as they span."""
+    table, scaled = way.table[k], 0.5 / (NEAREST * max(off_x * off_x + off_y * off_y, 1.0))
+    across = (way.along[0, k] * off_y - way.along[1, k] * off_x) * scaled + 0.5
+    along = (way.along[0, k] * off_x + way.along[1, k] * off_y) * scaled + 0.5
+    across = min(max(across, 0.0), 0.999999) * (ACROSS - 1)
+    along = min(max(along, 0.0), 1.0) * (ALONG - 1)
+    psi = (np.arctan2(off_y, off_x) + bias) / (2.0 * np.pi)
+    psi = (psi - np.floor(psi)) * TURN + 1.0
+    a, b, first = int(across), min(max(int(along + 0.5), 1), ALONG - 2), min(int(psi), TURN) - 1
+    right, t, end = np.float32(across - a), np.float32(along - b), first + rows.shape[1]
+    left, half = np.float32(1.0) - right, np.float32(0.5)
+    behind, here, ahead = half * t * (t - np.float32(1.0)), np.float32(1.0) - t * t, half * t * (t + np.float32(1.0))
+    for s in range(found.shape[0]):
+        near, far = table[a, :, s, first:end], table[a + 1, :, s, first:end]
+        blended(rows[s], near[b - 1], far[b - 1], left * behind, right * behind)
+        blended_more(rows[s], near[b], far[b], left * here, right * here)
+        blended_more(rows[s], near[b + 1], far[b + 1], left * ahead, right * ahead)
+    at = psi - first
+    for n in range(found.shape[1]):
+        column = int(at + 0.5)
+        t = at - column
+        before, there, after = 0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)
+        for s in range(found.shape[0]):
+            row = rows[s]
+            found[s, n] = max(before * row[column - 1] + there * row[column] + after * row[column + 1], 0.0)
+        at += step
 
 
 @jit
@@ -95,51 +138,51 @@ def _rescaled(table):
     """Divides by the largest of the table, and returns its logarithm."""
     top = 0.0
     for r in range(table.shape[0]):
-        for b in range(table.shape[1]):
-            top = max(top, table[r, b])
-    if top <= 0.0:
-        return 0.0
+        top = max(top, largest(table[r]))
     for r in range(table.shape[0]):
-        for b in range(table.shape[1]):
-            table[r, b] /= top
+        times(table[r], 1.0 / top)
     return np.log(top)
 
 
 @jit
-def _between(root, stride, ratio):
-    """ratio (b,) at every node, its logarithm linear between the coarse ones, where `root` is its stride-th root."""
-    for n in range(len(root) - 1):
-        step, found = root[n + 1] / root[n], root[n] ** stride
-        for b in range(n * stride, min((n + 1) * stride, len(ratio))):
-            ratio[b] = found
-            found *= step
+def _spread_out(row, coarse, root, halvings):
+    """A row (b,) times what stretches say at each node: coarse (n,) at every 2^halvings of them, its logarithm linear
+    between. root: (n,) scratch. Spoils `coarse`."""
+    for n in range(len(coarse)):
+        coarse[n] = max(coarse[n], LEAST)
+    copied(root, coarse)
+    for _ in range(halvings):
+        rooted(root)
+    for n in range(len(coarse) - 1):
+        root[n] = root[n + 1] / root[n]
+    stride, count = 1 << halvings, len(row)
+    for p in range(stride):
+        at = p
+        for n in range((count - p + stride - 1) >> halvings):
+            row[at] *= coarse[n]
+            at += stride
+        times_each(coarse, root)
 
 
 @jit
-def weigh_stretches(x, y, way, bias, spacing, scale, rate, sums, ratio, table):
+def weigh_stretches(x, y, way, bias, spacing, rate, scratch, table):
     """Multiplies (1 - e) f / c + e of every stretch into table (k e, b), for the emitter at (x, y), but for a factor
-    whose logarithm is returned: hundreds of stretches leave the range of numbers. sums: (SUMS, n) scratch, n of
-    `coarse_nodes`. ratio: (b,) scratch."""
-    heard, rates, stride, weighed, log = way.heard, len(rate), stride_of(spacing), 0, 0.0
-    for k in range(len(heard.worth)):
-        if _near(x, y, heard, k):
+    whose logarithm is returned: hundreds of stretches leave the range of numbers."""
+    found, coarse, rates, weighed, log = scratch.found, scratch.coarse, len(rate), 0, 0.0
+    halvings = halvings_of(spacing)
+    step = spacing * (1 << halvings) / PSI_STEP
+    coarse[:] = 1.0
+    for k in range(len(way.x)):
+        off_x, off_y = x - way.x[k], y - way.y[k]
+        if off_x * off_x + off_y * off_y < way.reach[k] * way.reach[k] and _near(x, y, way.heard, k):
             continue
-        _summed(x, y, way, k, bias, sums)
-        worth, readings = heard.worth[k], heard.first[k + 1] - heard.first[k] - 1
-        for n in range(sums.shape[1]):
-            whole = sums[0, n]
-            square = max(sums[2, n] - sums[1, n] * sums[1, n] / whole, 0.0)
-            sums[0, n] = worth * square / (readings * FREEDOM)
-            sums[1, n] = 0.5 * worth / readings * (sums[3, n] + np.log(whole))
-        for s in range(len(scale)):
-            for n in range(sums.shape[1]):
-                fit = np.log(1.0 + sums[0, n] / (scale[s] * scale[s]))
-                of_ratio = -0.5 * (FREEDOM + worth) * fit - sums[1, n] - heard.log_mean[k, s]
-                sums[2, n] = np.exp(max(of_ratio / stride, LEAST_LOG))
-            _between(sums[2], stride, ratio)
+        _look_up(off_x, off_y, way, k, bias[0], step, scratch.rows, found)
+        for s in range(found.shape[0]):
             for e in range(rates):
-                mixed(table[s * rates + e], ratio, 1.0 - rate[e], rate[e])
+                mixed(coarse[s * rates + e], found[s], 1.0 - rate[e], rate[e])
         weighed += 1
         if weighed % RESCALED_EVERY == 0:
-            log += _rescaled(table)
+            log += _rescaled(coarse)
+    for r in range(table.shape[0]):
+        _spread_out(table[r], coarse[r], scratch.root, halvings)
     return log

@@ -7,6 +7,8 @@ index is negative.
 
 from __future__ import annotations
 
+import numpy as np
+
 from planner.compiling import jit
 
 
@@ -39,6 +41,34 @@ def mixed(row, ratio, share, rest):
     """A row times what a stretch says at each node, relative to an outlier's density."""
     for b in range(len(row)):
         row[b] *= share * ratio[b] + rest
+
+
+@jit
+def blended(row, lower, upper, below, above):
+    """Two rows of a table, weighed."""
+    for b in range(len(row)):
+        row[b] = below * lower[b] + above * upper[b]
+
+
+@jit
+def blended_more(row, lower, upper, below, above):
+    """The same, added to what the row holds."""
+    for b in range(len(row)):
+        row[b] += below * lower[b] + above * upper[b]
+
+
+@jit
+def rooted(row):
+    """The square root of each entry."""
+    for b in range(len(row)):
+        row[b] = np.sqrt(row[b])
+
+
+@jit
+def times_each(row, other):
+    """Entry by entry."""
+    for b in range(len(row)):
+        row[b] *= other[b]
 
 
 @jit

@@ -17,7 +17,7 @@ from planner.belief.compiled_on_the_way import OnTheWay, on_the_way
 from planner.belief.evidence import Sightings
 from planner.belief.source_errors import Nodes
 from planner.compiling import SOURCES, allocating, entry
-from planner.on_the_way import Stretch, heard
+from planner.on_the_way import Stretch
 from planner.types import FloatArray, IntArray
 
 RESCALED_EVERY = 8
@@ -68,7 +68,7 @@ def prepared(seen: Sightings, nodes: Nodes, weight: FloatArray, stretches: Seque
     )
     return Prepared(
         seen,
-        on_the_way(heard(stretches, nodes.scale), len(nodes.bias), nodes.spacing),
+        on_the_way(stretches, nodes.scale),
         nodes.bias,
         nodes.spacing,
         nodes.scale,
