@@ -85,12 +85,19 @@ class Search:
         await self.shown.close()
         self.shown.events.clear()
         self.shown.messages.clear()
+        await self._knows_where_it_is()
         await self.shown.draft(**STRICT)
         await self.shown.ready(90)
         await self.shown.watch()
         await self.shown.start(90)
         await self.shown.until(lambda: self.shown.phases[-1:] == ["flying"], 120)
         self.proxy.delay_s, self.proxy.loss = delay_s, loss
+
+    async def _knows_where_it_is(self) -> None:
+        """A mission is suggested around the vehicle, which may just have been switched on."""
+        async with asyncio.timeout(90):
+            while (await self.shown.client.get("/api/vehicle")).json().get("lat") is None:  # noqa: ASYNC110 (another's)
+                await asyncio.sleep(0.3)
 
     async def strike(self, blow: Blow) -> Struck:
         """Raises TimeoutError or AssertionError when the moment does not come."""
