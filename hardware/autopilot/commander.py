@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections import defaultdict
 from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
 
 from hardware.authority import CommandAcknowledged, CommandSent
 from hardware.autopilot.control import Control
@@ -26,6 +28,9 @@ from hardware.reasons.vehicle import (
 from hardware.reasons.vehicle_news import TriedAgain, VehicleNews
 
 ACK_S, ACK_WALL_S, ATTEMPTS = 1.5, 1.0, 3
+QUICK, SLACK_S = 0.9, 0.05
+"""An answer that comes sooner than this share of the link's quickest round trip, by more than the slack, is one to an
+order before of the same number: an answer names no more than that."""
 
 
 class CommandDenied(VehicleError):
@@ -52,10 +57,19 @@ class Manoeuvre:
         self.superseded_by: ManoeuvreName | None = None
 
 
+@dataclass(slots=True)
+class _Order:
+    """One order that is sent until it is answered. sent_at_s: for the first time, by time.monotonic; None: not yet."""
+
+    sent_at_s: float | None = None
+    answer: asyncio.Future[CommandResult] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
+
+
 class Commander:
     """Sends commands for manoeuvres. Control and the manoeuvre are asked in the instant before each send.
 
     mode_heard: waits for the vehicle's next word of its mode, or until it has been silent about it long enough.
+    quickest_s: seconds of the wall from a question to its answer, at least, as the link is of late; 0: not known.
     """
 
     def __init__(
@@ -65,19 +79,23 @@ class Commander:
         control: Control,
         announce: Callable[[VehicleNews], None],
         mode_heard: Callable[[], Awaitable[None]],
+        quickest_s: Callable[[], float],
     ) -> None:
         self._link = link
         self._clock = clock
         self._control = control
         self._announce = announce
         self._mode_heard = mode_heard
-        self._waiting: dict[int, list[asyncio.Future[CommandResult]]] = defaultdict(list)
+        self._quickest_s = quickest_s
+        self._waiting: dict[int, list[_Order]] = defaultdict(list)
 
     def acknowledged(self, fields: Fields) -> None:
         """A COMMAND_ACK came."""
-        for future in self._waiting.get(int(fields["command"]), ()):
-            if not future.done():
-                future.set_result(result_of(int(fields["result"])))
+        quickest_s = self._quickest_s()
+        since_s = time.monotonic() - min(QUICK * quickest_s, max(quickest_s - SLACK_S, 0.0))
+        for order in self._waiting.get(int(fields["command"]), ()):
+            if order.sent_at_s is not None and order.sent_at_s <= since_s and not order.answer.done():
+                order.answer.set_result(result_of(int(fields["result"])))
 
     def check(self, manoeuvre: Manoeuvre) -> None:
         """Raises NotInControl or ManoeuvreSuperseded when this manoeuvre may not go on."""
@@ -103,7 +121,7 @@ class Commander:
             in_mode = outgoing.changes_mode or authority.heard in modes
             return authority.who == "ours" and in_mode and manoeuvre.superseded_by is None
 
-        in_mode_before = self._control.authority.heard in modes
+        in_mode_before, order = self._control.authority.heard in modes, _Order()
         for attempt in range(1, ATTEMPTS + 1):
             if outgoing.changes_mode:
                 await self._mode_heard()
@@ -111,7 +129,7 @@ class Commander:
             self._control.see(CommandSent(modes))
             if not allowed():
                 raise OutOfMode(ModeLeft(command))
-            result = await self._exchange(outgoing, attempt, allowed)
+            result = await self._exchange(outgoing, order, attempt, allowed)
             self.check(manoeuvre)
             if result in outgoing.delivered:
                 self._control.see(CommandAcknowledged())
@@ -127,38 +145,42 @@ class Commander:
 
     async def ask(self, outgoing: Outgoing) -> bool:
         """Send a command that moves nothing (telemetry rates); True when accepted. Anybody may have control."""
+        order = _Order()
         for attempt in range(1, ATTEMPTS + 1):
-            result = await self._exchange(outgoing, attempt, lambda: True)
+            result = await self._exchange(outgoing, order, attempt, lambda: True)
             if result is not None:
                 return result == "accepted"
         return False
 
-    async def _exchange(self, outgoing: Outgoing, attempt: int, allowed: Callable[[], bool]) -> CommandResult | None:
+    async def _exchange(
+        self, outgoing: Outgoing, order: _Order, attempt: int, allowed: Callable[[], bool]
+    ) -> CommandResult | None:
         """The final result, or None when none came (or nothing was sent)."""
         fields = outgoing.fields
         if outgoing.message == "COMMAND_LONG":
             fields = fields | {"confirmation": attempt - 1}
+
+        def goes() -> bool:
+            if order.sent_at_s is None:
+                order.sent_at_s = time.monotonic()
+            return allowed()
+
         waiting = self._waiting[outgoing.number]
-        future: asyncio.Future[CommandResult] = asyncio.get_running_loop().create_future()
-        waiting.append(future)
+        waiting.append(order)
         try:
-            if not await self._link.send(outgoing.message, fields, allowed):
+            if not await self._link.send(outgoing.message, fields, goes):
                 return None
-            result = await self._answer(future, Deadline(self._clock, ACK_S, ACK_WALL_S), allowed)
+            result = await self._answer(order, Deadline(self._clock, ACK_S, ACK_WALL_S), allowed)
             if result == "in_progress":
-                waiting.remove(future)
-                future = asyncio.get_running_loop().create_future()
-                waiting.append(future)
-                result = await self._answer(future, Deadline(self._clock, 10.0, 5.0), allowed)
+                order.answer = asyncio.get_running_loop().create_future()
+                result = await self._answer(order, Deadline(self._clock, 10.0, 5.0), allowed)
             return result
         finally:
-            waiting.remove(future)
+            waiting.remove(order)
 
-    async def _answer(
-        self, future: asyncio.Future[CommandResult], deadline: Deadline, allowed: Callable[[], bool]
-    ) -> CommandResult | None:
+    async def _answer(self, order: _Order, deadline: Deadline, allowed: Callable[[], bool]) -> CommandResult | None:
         while not deadline.passed and allowed():
-            done, _ = await asyncio.wait((future,), timeout=0.05)
+            done, _ = await asyncio.wait((order.answer,), timeout=0.05)
             if done:
-                return future.result()
+                return order.answer.result()
         return None

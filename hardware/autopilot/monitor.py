@@ -100,8 +100,10 @@ class Monitor:
         self._autopilot_number: int | None = None
         self._announcer = Announcer()
         self.control = Control(self._on_authority)
-        self.commander = Commander(self.link, clock, self.control, self.announce, self.mode_heard)
         self.timesync = Timesync(self.link, clock, self.snapshot)
+        self.commander = Commander(
+            self.link, clock, self.control, self.announce, self.mode_heard, lambda: self.timesync.quickest_s
+        )
         self.silence = Silence()
         self.mode_switch = ModeSwitch()
         self._after_silence = AfterSilence(clock)

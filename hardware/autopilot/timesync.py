@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
@@ -19,6 +20,7 @@ EVERY_WALL_S = 0.2
 UNANSWERED = 5
 """After this number of questions in a row without an answer, a PING goes with each."""
 _ASKED_MOST = 50
+_ROUNDS_KEPT = 100
 _EVERYBODY = {"target_system": 0, "target_component": 0}
 """Of a PING: a question; with a target it is an answer."""
 
@@ -45,6 +47,12 @@ class Timesync:
         self._asked: dict[int, float] = {}
         self._pinged: dict[int, float] = {}
         self._unanswered = 0
+        self._rounds_s: deque[float] = deque(maxlen=_ROUNDS_KEPT)
+
+    @property
+    def quickest_s(self) -> float:
+        """From a question to its answer, at least, of late and by the wall; 0 before any was answered."""
+        return min(self._rounds_s, default=0.0)
 
     async def run(self) -> None:
         """Until cancelled."""
@@ -81,10 +89,12 @@ class Timesync:
         boot_ns, sent_at_s = int(fields["tc1"]), self._asked.pop(int(fields["ts1"]), None)
         if boot_ns > 0 and sent_at_s is not None:
             self._unanswered = 0
+            self._rounds_s.append((time.monotonic_ns() - int(fields["ts1"])) / 1e9)
             self._timed.exchanged(sent_at_s, boot_ns / 1e9, heard_at_s)
 
     def came_back(self, fields: Fields, heard_at_s: float) -> None:
         """A PING came: ours with its answer, or somebody else's business."""
         sent_at_s = self._pinged.pop(int(fields["time_usec"]), None)
         if sent_at_s is not None and int(fields["target_system"]) != 0:
+            self._rounds_s.append((time.monotonic_ns() // 1000 - int(fields["time_usec"])) / 1e6)
             self._timed.went_round(sent_at_s, heard_at_s)

@@ -14,15 +14,19 @@ import argparse
 import asyncio
 import contextlib
 import json
+import math
 import random
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 
 from backend.cli.running import RunningServer, running_server
 from backend.events import FIRST_CRAFT
+from backend.search import sector
 from backend.settings import Settings
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.px4 import PX4
@@ -31,7 +35,8 @@ from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.strikes.__main__ import vars_of
-from tests.strikes.missions import FLYING_M_S, speed_m_s, witness
+from tests.strikes.missions import witness
+from tests.strikes.moments import MOMENTS, SEARCHES, moment
 from tests.strikes.nose import (
     Deed,
     Struck,
@@ -49,17 +54,11 @@ from tests.strikes.strike import STICKS_S, left_for, story, until
 from tests.system.console import Console, console
 
 STRICT = {"localization": {"expected_rmse_m": 0.5, "maximum_bearings": 120}}
-TURNS_DEG_S = 10.0
-LATER_S = 1.0
-"""A strike comes at most this long after the nose was seen to turn."""
 WATCHED_S = 6.0
 BEFORE_S = 0.01
 """An order of the way home is no part of what its abort is judged by."""
-MOMENT_S = 150.0
-"""The longest wait for a swing or a sector."""
 SHOWS: dict[Deed, tuple[str, ...]] = {"pilot": ("manual",), "hold": ("hold",), "abort": ("hold", "returning")}
 RETURNS = {"px4": PX4.return_home.custom, "ardupilot": ARDUPILOT.return_home.custom}
-SEARCHES = ("planning", "flying", "measuring")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,22 +79,30 @@ class Search:
     chance: random.Random
     flavour: str
 
-    async def begin(self, delay_s: float) -> None:
-        """In the air; the link is as slow as wanted from then on."""
-        self.proxy.delay_s = 0.0
+    async def begin(self, delay_s: float, loss: float) -> None:
+        """In the air; the link is as slow and as bad as wanted from then on."""
+        self.proxy.delay_s = self.proxy.loss = 0.0
         await self.shown.close()
         self.shown.events.clear()
         self.shown.messages.clear()
+        await self._knows_where_it_is()
         await self.shown.draft(**STRICT)
         await self.shown.ready(90)
         await self.shown.watch()
         await self.shown.start(90)
         await self.shown.until(lambda: self.shown.phases[-1:] == ["flying"], 120)
-        self.proxy.delay_s = delay_s
+        self.proxy.delay_s, self.proxy.loss = delay_s, loss
+
+    async def _knows_where_it_is(self) -> None:
+        """A mission is suggested around the vehicle, which may just have been switched on."""
+        async with asyncio.timeout(90):
+            while (await self.shown.client.get("/api/vehicle")).json().get("lat") is None:  # noqa: ASYNC110 (another's)
+                await asyncio.sleep(0.3)
 
     async def strike(self, blow: Blow) -> Struck:
         """Raises TimeoutError or AssertionError when the moment does not come."""
-        await self._moment(blow.during)
+        with every_look_unsure() if blow.during == "extension" else contextlib.nullcontext():
+            await moment(self.shown, self.proxy, self.chance, blow.during)
         rate, known = rate_deg_s(self.proxy.record), len(self.shown.phases)
         at_s, ordered = time.monotonic(), None
         match blow.deed:
@@ -153,7 +160,7 @@ class Search:
     async def _recover(self, deed: Deed) -> bool | None:
         """Whether the search goes on; None after an abort, when the vehicle is down again."""
         if deed == "abort":
-            self.proxy.delay_s = 0.0
+            self.proxy.delay_s = self.proxy.loss = 0.0
             await self.shown.until(lambda: self.shown.phases[-1] == "ground", 300)
             return None
         if deed == "pilot":
@@ -166,62 +173,45 @@ class Search:
                 return True
         return False
 
-    async def _moment(self, during: While) -> None:
-        """The nose turns, as a swing or a sector does, and a moment has passed."""
-        end_s = time.monotonic() + MOMENT_S
-        while time.monotonic() < end_s:
-            phase = self.shown.phases[-1]
-            if phase == "hold":  # for a reason of its own
-                await self.shown.order("resume")
-                await asyncio.sleep(1.0)
-            elif phase not in SEARCHES:
-                raise TimeoutError(f"the mission is {phase}: {self.shown.of('phase_changed')[-1]['event']['reason']}")
-            if phase != "measuring":
-                self.shown.messages.pop("sweep_progress", None)
-            if self._turns(during):
-                await asyncio.sleep(self.chance.uniform(0.0, LATER_S))
-                if self._turns(during):
-                    return
-            await asyncio.sleep(0.05)
-        raise TimeoutError(f"no {during} within {MOMENT_S:g} s")
 
-    def _turns(self, during: While) -> bool:
-        phase, record = self.shown.phases[-1], self.proxy.record[-200:]
-        if abs(rate_deg_s(record)) < TURNS_DEG_S:
-            return False
-        if during == "swing":
-            return phase == "flying" and (speed_m_s(record) or 0.0) > FLYING_M_S
-        told = self.shown.messages.get("sweep_progress", [])
-        return phase == "measuring" and bool(told) and told[-1]["sector"] is not None
+@contextlib.contextmanager
+def every_look_unsure() -> Iterator[None]:
+    """Each sector is extended, as by a sweep that hardly shows a lobe."""
+    sure, sector.SURE_QUALITY = sector.SURE_QUALITY, math.inf
+    try:
+        yield
+    finally:
+        sector.SURE_QUALITY = sure
 
 
 def blows(number: int, flavour: str) -> list[Blow]:
-    """Of one mission, ended by an abort: in a swing and in a sector in turn."""
+    """Of one mission, ended by an abort: in a swing, at its end, in a sector and in its extension in turn."""
     sticks = "sticks" if flavour == "px4" else "mode"
     return [
         Blow("swing", "hold"),
         Blow("swing", "pilot", "mode"),
         Blow("sector", "hold"),
+        Blow("turn back", "hold"),
+        Blow("extension", "pilot", "mode"),
         Blow("swing", "pilot", sticks),
         Blow("sector", "pilot", "mode"),
-        Blow("swing", "hold"),
-        Blow("sector", "hold"),
+        Blow("turn back", "pilot", "mode"),
+        Blow("extension", "hold"),
         Blow("sector", "pilot", sticks),
-        Blow("sector" if number % 2 else "swing", "abort"),
+        Blow(MOMENTS[number % len(MOMENTS)], "abort"),
     ]
 
 
 async def run(given: argparse.Namespace) -> list[Struck]:
-    struck, number, begun_s = list[Struck](), 0, time.monotonic()
+    struck, missions, begun_s = list[Struck](), count(), time.monotonic()
     async with proxied(given.vehicle) as proxy, piloted(proxy, given.flavour) as pilot:
         proxy.kept = KEPT | {ATTITUDE, GLOBAL_POSITION}
-        for round_ in range(given.rounds):
+        for _ in range(given.rounds):
             for delay_ms in given.delays:
-                for abort in range(2):
+                for _ in range(2):
                     if time.monotonic() - begun_s > 60.0 * given.minutes:
                         return struck
-                    number = (2 * round_ + abort) % 2
-                    await _mission(given, proxy, pilot, delay_ms / 1e3, number, struck)
+                    await _mission(given, proxy, pilot, delay_ms / 1e3, next(missions), struck)
     return struck
 
 
@@ -237,7 +227,7 @@ async def _mission(
             running.receiver.follow(witness(proxy))
             search = Search(running, proxy, pilot, shown, random.Random(seed), given.flavour)
             try:
-                await search.begin(delay_s)
+                await search.begin(delay_s, given.loss)
                 for blow in blows(number, given.flavour):
                     struck.append(await search.strike(blow))
                     print(line(struck[-1]), flush=True)
@@ -245,7 +235,7 @@ async def _mission(
             except (TimeoutError, AssertionError) as error:
                 print(f"seed {seed}: did not come about: {str(error)[-2000:]}", flush=True)
             finally:
-                proxy.delay_s = 0.0
+                proxy.delay_s = proxy.loss = 0.0
                 await _down(running)
                 if given.record is not None:
                     with given.record.open("a") as record:
@@ -339,8 +329,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vehicle", help="its address, as `crossfix serve --vehicle` takes it")
     parser.add_argument("--flavour", choices=("px4", "ardupilot"), default="px4")
-    parser.add_argument("--rounds", type=int, default=1, help="each flies two missions at each delay, of nine strikes")
+    parser.add_argument("--rounds", type=int, default=1, help="each flies two missions at each delay, of eleven blows")
     parser.add_argument("--delays", type=float, nargs="+", default=[0.0, 250.0], help="ms each way")
+    parser.add_argument("--loss", type=float, default=0.0, help="share of frames that is lost each way")
     parser.add_argument("--minutes", type=float, default=600.0, help="begin no mission after so long")
     parser.add_argument("--seed", type=int, default=1, help="of the first mission")
     parser.add_argument("--record", type=Path, help="write what passed, a JSON line each")

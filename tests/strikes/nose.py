@@ -13,7 +13,8 @@ from tests.strikes.missions import turned_deg
 from tests.strikes.proxy import ATTITUDE, COMMAND_INT, COMMAND_LONG, Passed
 
 Deed = Literal["pilot", "hold", "abort"]
-While = Literal["swing", "sector"]
+While = Literal["swing", "turn back", "sector", "extension"]
+"""turn back: in a swing, from one side to the other. extension: of a sector, beyond what was planned."""
 STILL_DEG_S = 5.0
 """Below, a nose that hovers corrects its heading."""
 

@@ -78,7 +78,7 @@ class Scene:
         self.link = PaperLink(self.hear, list(opened))
         self.monitor.link = link = cast(MavlinkLink, self.link)
         self.monitor.commander = Commander(
-            link, self.clock, self.monitor.control, self.monitor.announce, self.monitor.mode_heard
+            link, self.clock, self.monitor.control, self.monitor.announce, self.monitor.mode_heard, lambda: 0.0
         )
 
     def hear(self, name: str, fields: Fields) -> None:

@@ -47,7 +47,11 @@ class Rig:
         self.news: list[VehicleNews] = []
         link: Any = self.wire
         self.mode_asked = 0
-        self.commander = Commander(link, ScaledClock(None, 100.0), self.control, self.news.append, self.mode_heard)
+        self.quickest_s = 0.0
+        clock = ScaledClock(None, 100.0)
+        self.commander = Commander(
+            link, clock, self.control, self.news.append, self.mode_heard, lambda: self.quickest_s
+        )
         self.manoeuvre = Manoeuvre("flight")
 
     async def mode_heard(self) -> None:
@@ -95,6 +99,48 @@ async def test_another_commands_acknowledgement_is_not_ours() -> None:
     assert len(rig.wire.sent) == 2
     assert [fields["confirmation"] for fields in rig.wire.sent] == [0, 1]
     assert rig.news == [TriedAgain(CommandUnanswered("place", 1), 2)]
+
+
+async def test_an_answer_sooner_than_the_link_is_quick_is_to_an_order_before() -> None:
+    """Answers name a command's number and nothing else: PX4's nose on the way and its hold have the same."""
+    rig = Rig()
+    rig.quickest_s = 0.2
+    loop = asyncio.get_running_loop()
+
+    def answer(count: int) -> None:
+        if count == 1:  # lost; what comes answers the order of the nose that is under way
+            rig.acknowledge(0)
+            loop.call_later(0.05, rig.acknowledge, 0)
+        else:
+            loop.call_later(0.2, rig.acknowledge, 0)
+
+    rig.wire.answer = answer
+    await rig.order(pause_here())
+
+    assert len(rig.wire.sent) == 2
+    assert rig.news == [TriedAgain(CommandUnanswered("place", 1), 2)]
+
+
+async def test_an_answer_before_anything_was_sent_is_to_an_order_before() -> None:
+    rig = Rig()
+    rig.wire.before = lambda: rig.acknowledge(2)
+    rig.wire.answer = lambda count: rig.acknowledge(0)
+
+    await rig.order()
+
+    assert len(rig.wire.sent) == 1
+
+
+async def test_a_late_answer_to_the_first_of_two_sends_counts() -> None:
+    rig = Rig()
+    rig.quickest_s = 1.5  # longer than an answer is waited for
+    rig.wire.answer = lambda count: (
+        asyncio.get_running_loop().call_later(1.6, rig.acknowledge, 0) if count == 1 else None
+    )
+
+    await rig.order()
+
+    assert len(rig.wire.sent) == 2
 
 
 async def test_in_progress_waits_for_the_last_word_without_sending_again() -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from typing import Any, cast
 
@@ -79,3 +80,18 @@ async def test_what_others_ask_and_answer_is_none() -> None:
     timesync.heard({"tc1": 42_500_000_000, "ts1": 7}, 9e9)
     timesync.heard({"tc1": 0, "ts1": wire.sent[0]["ts1"]}, 9e9)
     assert exchanges == []
+
+
+async def test_the_quickest_way_round_is_known_from_questions_of_either_kind() -> None:
+    timesync, wire, _ = made()
+    assert timesync.quickest_s == 0.0
+    for _ in range(UNANSWERED + 1):
+        await timesync.ask()
+    await asyncio.sleep(0.05)
+    timesync.came_back(wire.pings[-1] | {"target_system": 255, "target_component": 190}, 9e9)
+    slow_s = timesync.quickest_s
+    assert slow_s >= 0.05
+
+    await timesync.ask()
+    timesync.heard({"tc1": 42_500_000_000, "ts1": wire.sent[-1]["ts1"]}, 9e9)
+    assert 0.0 < timesync.quickest_s < slow_s
