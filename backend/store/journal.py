@@ -169,7 +169,7 @@ class SqlJournal:
         for at in range(0, len(rows), PIECE):
             piece = rows[at : at + PIECE]
             here = await self.read(mission_id, at, len(piece))
-            if await beside(len(here), lambda here=here: [to_row(r.seq, r.at_utc, r.event) for r in here]) != [*piece]:
+            if await beside(len(here), _rows, here) != [*piece]:
                 return False
         return True
 
@@ -363,6 +363,10 @@ def _of_this_installation(recorded: Sequence[Recorded]) -> Sequence[Recorded]:
     """Without what came in with a bundle: those nets are of vehicles elsewhere."""
     brought = [at for at, record in enumerate(recorded) if isinstance(record.event, MissionBroughtIn)]
     return recorded[brought[-1] + 1 :] if brought else recorded
+
+
+def _rows(recorded: Sequence[Recorded]) -> list[EventRow]:
+    return [to_row(record.seq, record.at_utc, record.event) for record in recorded]
 
 
 def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:
