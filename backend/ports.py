@@ -83,8 +83,10 @@ class Journal(Protocol):
         """For a person to look at: facts that were refused. They are counted and block nothing."""
         ...
 
-    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
-        """The events after number `after`, in order; empty for an unknown mission. Raises JournalUnavailable."""
+    async def read(self, mission_id: str, after: int = 0, most: int | None = None) -> list[Recorded]:
+        """The events after number `after`, in order, the first `most` of them; empty for an unknown mission.
+
+        Raises JournalUnavailable."""
         ...
 
     async def listed(self, mission_id: str) -> Listed | None:

@@ -14,6 +14,7 @@ from backend.api.ordering import ordered, permit
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.api.suggestion import with_errors_estimated
+from backend.beside import beside
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
 from backend.logs import about
@@ -43,7 +44,7 @@ async def _mission(services: Services, mission_id: str) -> Mission:
     digest = await stored_mission(services, mission_id)
     kept = await asyncio.to_thread(services.iq.sizes, [mission_id])
     recorded = await services.journal.read_kinds(mission_id, summary.DETAIL_KINDS)
-    return summary.mission(digest, kept.get(mission_id, 0), recorded)
+    return await beside(len(recorded), summary.mission, digest, kept.get(mission_id, 0), recorded)
 
 
 async def mission_line(services: Services, mission_id: str) -> MissionSummary:

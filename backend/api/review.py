@@ -20,6 +20,7 @@ from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
 from backend.api.services import Services
 from backend.api.what_if import SUPPOSED_KINDS, what_if
+from backend.beside import beside as beside_loop
 from backend.events import FIRST_CRAFT, Recorded
 from backend.reasons.request import IqNotKept
 from backend.store.brought import raw_files
@@ -138,22 +139,24 @@ async def get_antenna(mission_id: MissionId, services: ServicesDep, emitter: Emi
     return found
 
 
-@router.get("/sweeps/{sweep_id}")
-async def get_sweep(mission_id: MissionId, sweep_id: SweepId, services: ServicesDep) -> SweepRecord:
+@router.get("/sweeps/{sweep_id}", response_model=SweepRecord)
+async def get_sweep(mission_id: MissionId, sweep_id: SweepId, services: ServicesDep) -> Response:
     """The raw power samples of one sweep."""
     await stored_mission(services, mission_id)
     entry = await services.journal.sweep(mission_id, sweep_id)
     if entry is None:
         raise not_found("sweep", sweep_id)
-    return summary.sweep_record(entry)
+    told = await beside_loop(len(entry.samples), lambda: summary.sweep_record(entry).model_dump_json())
+    return Response(told, media_type="application/json")
 
 
-@router.get("/track")
-async def get_track(mission_id: MissionId, services: ServicesDep, craft: CraftId = FIRST_CRAFT) -> Track:
+@router.get("/track", response_model=Track)
+async def get_track(mission_id: MissionId, services: ServicesDep, craft: CraftId = FIRST_CRAFT) -> Response:
     """The flown path of a craft."""
     await stored_mission(services, mission_id)
     track = (await services.journal.tracks(mission_id)).get(craft, [])
-    return Track(mission_id=mission_id, craft_id=craft, points=[summary.track_fact(point) for point in track])
+    told = await beside_loop(len(track), summary.track_text, mission_id, craft, track)
+    return Response(told, media_type="application/json")
 
 
 @router.get("/export/{format}", response_class=Response, responses=FILE)
@@ -170,7 +173,8 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     making = EXPORTS[format]
     if format == "bundle":
         ways = await asyncio.to_thread(WaysFiles.of_settings(services.settings).content, mission_id)
-        making = partial(bundle, raw=raw_files(mission_id, await services.journal.sweeps(mission_id), tracks, ways))
+        sweeps = await services.journal.sweeps(mission_id)
+        making = partial(bundle, raw=await asyncio.to_thread(raw_files, mission_id, sweeps, tracks, ways))
     return Response(
         await beside(services, len(recorded), making, recorded, tracks),
         media_type=MEDIA_TYPES[format],

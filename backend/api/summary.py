@@ -16,7 +16,7 @@ from backend.search.state import SearchState, evolve
 from backend.store.digest import EPOCH, MissionDigest
 from backend.store.entries import SweepEntry
 from backend.store.retention import DELETED_DAYS
-from backend.wire.resources import EmitterFound, Mission, MissionSummary, SweepRecord, TrackFact
+from backend.wire.resources import EmitterFound, Mission, MissionSummary, SweepRecord, Track, TrackFact
 from planner.reasons import NoBearingYet
 
 DETAIL_KINDS = (
@@ -128,6 +128,12 @@ def sweep_record(entry: SweepEntry) -> SweepRecord:
 
 def _numbers(values: NDArray[np.float64]) -> list[float | None]:
     return [value if math.isfinite(value) else None for value in values.tolist()]
+
+
+def track_text(mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> str:
+    """The JSON of a Track."""
+    track = Track(mission_id=mission_id, craft_id=craft_id, points=[track_fact(point) for point in points])
+    return track.model_dump_json()
 
 
 def track_fact(point: TrackPoint) -> TrackFact:

@@ -7,6 +7,7 @@ import asyncio
 import logging
 from collections.abc import Sequence
 
+from backend.beside import beside
 from backend.events import AntennaChecked, MissionStarted, Recorded
 from backend.mission.equipment import MissionEquipment
 from backend.mission.runner import MissionRunner
@@ -37,7 +38,7 @@ async def learn_from_truth(equipment: MissionEquipment, mission_id: str, recorde
 
     Only what is still kept is: a flight from before a calibration, forgotten since, stays forgotten. Never raises.
     """
-    search = fold(recorded).search
+    search = (await beside(len(recorded), fold, recorded)).search
     if search.stage != "ended" or search.home is None:
         return
     for started in (r.event for r in recorded if isinstance(r.event, MissionStarted) and r.event.antenna is not None):

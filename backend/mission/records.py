@@ -6,11 +6,12 @@ import asyncio
 import logging
 from collections.abc import Sequence
 
+from backend.beside import beside
 from backend.events import Event, Recorded
 from backend.mission.effects import Effect
 from backend.mission.inputs import Input
 from backend.mission.machine import transition
-from backend.mission.state import MissionState, fold
+from backend.mission.state import MissionState, fold_on
 from backend.ports import Journal, Listed, Publisher
 from backend.search.area import corner_of
 from backend.search.effects import Record
@@ -20,6 +21,9 @@ from hardware.ports import Clock
 from planner.types import PlannerError
 
 log = logging.getLogger("crossfix.mission")
+
+PIECE = 1_000
+"""Facts in memory at once."""
 
 
 class Records:
@@ -43,9 +47,17 @@ class Records:
         return recorded
 
     async def load(self, mission_id: str) -> tuple[MissionState, int]:
-        """The state, and the number of the last fact. Raises MissionNotFound."""
-        recorded = await self.read(mission_id)
-        return fold(recorded), recorded[-1].seq
+        """The state, and the number of the last fact. A large mission is folded a piece at a time: the garbage
+        collector stops everything for as long as it looks at all its facts at once. Raises MissionNotFound."""
+        state, last_seq = MissionState(), 0
+        while piece := await self._journal.read(mission_id, last_seq, PIECE):
+            state = await beside(len(piece), fold_on, state, piece)
+            last_seq = piece[-1].seq
+            if len(piece) < PIECE:
+                break
+        if last_seq == 0:
+            raise MissionNotFound(mission_id)
+        return state, last_seq
 
     async def give(self, mission_id: str, state: MissionState, given: Input) -> tuple[tuple[Effect, ...], int | None]:
         """A mission that does not fly: only its facts and its answer matter. The last seq, None without a fact."""

@@ -111,7 +111,11 @@ def newcomer(state: MissionState, craft_id: str) -> CraftState:
 
 def fold(recorded: Iterable[Recorded]) -> MissionState:
     """The state after a whole journal, in sequence order."""
-    state = MissionState()
+    return fold_on(MissionState(), recorded)
+
+
+def fold_on(state: MissionState, recorded: Iterable[Recorded]) -> MissionState:
+    """The state after facts that follow on those it was folded from."""
     for fact in recorded:
         state = evolve(state, fact.event, fact.at_utc.timestamp())
     return state

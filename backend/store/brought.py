@@ -22,7 +22,6 @@ from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import (
-    FORM,
     BearingExcluded,
     BearingIncluded,
     BearingMeasured,
@@ -71,7 +70,8 @@ MOST_TOLD, LONGEST_MODE, LONGEST_TAG = 1e6, 40, 200
 """Metres, degrees, percent or decibels that a point of a path or a sweep may tell, and characters of its words; NaN of
 a point: it does not."""
 WRITE_S = 10.0
-AT_ONCE = 500
+AT_ONCE = 64
+"""Rows of one statement: to pack their texts holds the event loop."""
 
 OfEmitter = BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected | HeardOnTheWay
 
@@ -346,17 +346,22 @@ async def bring_in(engine: AsyncEngine, brought: Brought, at_utc: datetime, by: 
     added = [to_row(seq, at_utc, fact) for seq, fact in enumerate(facts, start=len(brought.rows) + 1)]
     columns = to_columns(fold(brought.digest, to_records(brought.mission_id, added)))
     columns["name"] = columns["name"].replace("\x00", "")
-    rows = [
-        {"mission_id": brought.mission_id, "seq": row.seq, "at_us": row.at_us, "kind": row.kind, "form": FORM}
-        | {"body": row.body}
-        for row in (*brought.rows, *added)
-    ]
+    rows = (*brought.rows, *added)
     try:
         async with patience(WRITE_S), engine.execution_options(write=True).begin() as connection:
             await connection.execute(missions.insert().values(columns))
             for at in range(0, len(rows), AT_ONCE):
-                await connection.execute(events.insert(), rows[at : at + AT_ONCE])
+                await connection.execute(
+                    events.insert(), [_columns(brought.mission_id, row) for row in rows[at : at + AT_ONCE]]
+                )
             for entry in (*brought.sweeps, *brought.tracks):
                 await connection.run_sync(entry.write)
     except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
         raise unavailable(error, engine) from error
+
+
+def _columns(mission_id: str, row: EventRow) -> dict[str, str | int]:
+    return {
+        "mission_id": mission_id, "seq": row.seq, "at_us": row.at_us,
+        "kind": row.kind, "form": row.form, "body": row.body,
+    }  # fmt: skip

@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 
 from sqlalchemy.ext.asyncio import AsyncEngine
 
+from backend.beside import beside
 from backend.events import Event, MissionBroughtIn, Recorded
 from backend.ports import FactRefused, JournalDamaged, JournalUnavailable, Kept, Listed, TrackPoint
 from backend.reasons.storage import FactUnfit, WrittenElsewhere
@@ -26,6 +27,7 @@ from backend.store.digest import MissionDigest, fold
 from backend.store.engine import dispose
 from backend.store.entries import (
     Entry,
+    EventRow,
     EventsEntry,
     JournalConflict,
     SweepEntry,
@@ -43,6 +45,9 @@ log = logging.getLogger("crossfix.store")
 T = TypeVar("T")
 
 START_PATIENCE_S = 20.0
+
+PIECE = 500
+"""Facts that are compared at once."""
 
 NETS_MISSIONS = 100
 """So many missions back a vehicle's own nets may still wait to be put back."""
@@ -149,15 +154,24 @@ class SqlJournal:
 
     async def _bring_in(self, brought: Brought, by: str) -> bool:
         async with self._bringing:
-            here = (await self._known(brought.mission_id)).recorded
-            if here:
-                rows = await asyncio.to_thread(lambda: tuple(to_row(r.seq, r.at_utc, r.event) for r in here))
-                if rows[: len(brought.rows)] != brought.rows:
-                    raise JournalConflict(WrittenElsewhere(brought.mission_id, len(here)))
+            here = await self.mission(brought.mission_id)
+            if here is not None:
+                if not await self._begins_with(brought.mission_id, brought.rows):
+                    raise JournalConflict(WrittenElsewhere(brought.mission_id, here.last_seq))
                 return False
             at_utc = datetime.fromtimestamp(self._now(), UTC)
             await bring_in(self._engine, brought, at_utc, by)
             return True
+
+    async def _begins_with(self, mission_id: str, rows: Sequence[EventRow]) -> bool:
+        """rows: in today's form. Compared a piece at a time: all facts of a large mission at once, even in a thread,
+        hold the event loop up for as long as the garbage collector looks at them."""
+        for at in range(0, len(rows), PIECE):
+            piece = rows[at : at + PIECE]
+            here = await self.read(mission_id, at, len(piece))
+            if await beside(len(here), _rows, here) != [*piece]:
+                return False
+        return True
 
     async def save_sweep(
         self,
@@ -195,8 +209,9 @@ class SqlJournal:
         if mission_id not in self._written:
             recorded = await self._stored.read(mission_id)
             waiting = [row for entry in self._delivery.waiting_events(mission_id) for row in entry.rows]
-            recorded += to_records(mission_id, [row for row in waiting if row.seq > len(recorded)])
-            return Written(recorded, fold(None, recorded) if recorded else None)
+            missing = [row for row in waiting if row.seq > len(recorded)]
+            recorded += await beside(len(missing), to_records, mission_id, missing)
+            return Written(recorded, await beside(len(recorded), fold, None, recorded) if recorded else None)
         return self._written[mission_id]
 
     # Being away and coming back
@@ -348,6 +363,10 @@ def _of_this_installation(recorded: Sequence[Recorded]) -> Sequence[Recorded]:
     """Without what came in with a bundle: those nets are of vehicles elsewhere."""
     brought = [at for at, record in enumerate(recorded) if isinstance(record.event, MissionBroughtIn)]
     return recorded[brought[-1] + 1 :] if brought else recorded
+
+
+def _rows(recorded: Sequence[Recorded]) -> list[EventRow]:
+    return [to_row(record.seq, record.at_utc, record.event) for record in recorded]
 
 
 def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 import logging
 import sqlite3
-from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
+from collections.abc import Collection, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 from sqlalchemy import ColumnElement, Executable, exc, func, or_, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
+from backend.beside import MANY, beside
 from backend.events import FORM, Recorded
 from backend.ports import JournalDamaged, JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy, MissionDamaged
@@ -53,11 +54,6 @@ class Wanted:
 
 
 ANY = Wanted()
-
-MANY_ROWS = 64
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 
 def _asked(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
@@ -108,14 +104,14 @@ class StoredFacts:
         """Facts of today's form, in order; older ones are upgraded. kinds, most: None for all."""
         with _whole(mission_id):
             rows = await self._rows(mission_id, after, kinds, most)
-            return await _beside(len(rows), to_records, mission_id, rows, await self._imports(mission_id, rows))
+            return await beside(len(rows), to_records, mission_id, rows, await self._imports(mission_id, rows))
 
     async def read_texts(self, mission_id: str, after: int = 0, most: int | None = None) -> list[str]:
         """What `read` gives, each as the wire tells it."""
         with _whole(mission_id):
             rows = await self._rows(mission_id, after, None, most)
             told_anew = sum(row.form != FORM for row in rows)
-            return await _beside(told_anew, to_texts, mission_id, rows, await self._imports(mission_id, rows))
+            return await beside(told_anew, to_texts, mission_id, rows, await self._imports(mission_id, rows))
 
     async def _rows(
         self, mission_id: str, after: int, kinds: Collection[str] | None, most: int | None
@@ -124,7 +120,8 @@ class StoredFacts:
         query = query.limit(most)
         if kinds is not None:
             query = query.where(events.c.kind.in_(kinds_of_old(kinds)))
-        return [EventRow(*row) for row in await self._fetch(query)]
+        rows = await self._fetch(query)
+        return await beside(len(rows), lambda: [EventRow(*row) for row in rows])
 
     async def _imports(self, mission_id: str, rows: Sequence[EventRow]) -> Imports:
         """What the mission says of imported sweeps, asked for where a row of form 1 needs it."""
@@ -193,9 +190,12 @@ class StoredFacts:
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
             async with patience(self._timeout_s), self._engine.connect() as connection:
-                return list(await connection.execute(query))
+                found = await connection.execute(query)
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
             raise unavailable(error, self._engine) from error
+        # All rows have come from the database by now; to unpack the texts of many takes long.
+        rows = list[Any](found.fetchmany(MANY))
+        return rows if len(rows) < MANY else rows + list(await asyncio.to_thread(found.fetchall))
 
 
 @contextmanager
@@ -206,13 +206,6 @@ def _whole(mission_id: str) -> Generator[None]:
     except ValueError as error:
         log.error("mission %s: what is stored of it cannot be read: %s", mission_id, error)
         raise JournalDamaged(MissionDamaged(mission_id, why(error))) from error
-
-
-async def _beside(count: int, work: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:
-    """Many facts are read in a thread, so that an abort is answered meanwhile."""
-    if count < MANY_ROWS:
-        return work(*args, **named)
-    return await asyncio.to_thread(work, *args, **named)
 
 
 def _in_time_order(rows: Iterable[Any], pieces: Iterable[Any]) -> dict[str, list[TrackPoint]]:

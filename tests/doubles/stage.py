@@ -80,8 +80,8 @@ class MemoryJournal:
     async def keep_aside(self, mission_id: str, events: Sequence[Event], why: str) -> None:
         self.aside += events
 
-    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
-        return self.stored.get(mission_id, [])[after:]
+    async def read(self, mission_id: str, after: int = 0, most: int | None = None) -> list[Recorded]:
+        return self.stored.get(mission_id, [])[after:][:most]
 
     async def append_unread(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
         return await self.append(mission_id, events)

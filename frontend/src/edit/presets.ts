@@ -43,12 +43,13 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
 export function presetOf(spec: MissionSpec): PresetName | null {
   const [emitter, { sensor }] = [firstEmitter(spec), spec];
   const found = presetNames.find((name) => {
-    const { frequencyHz, kind, sigmaDeg, measurementS } = presets[name];
+    const { frequencyHz, kind, sigmaDeg, measurementS, turnRateDegS } = presets[name];
     return (
       emitter.frequency_hz === frequencyHz &&
       emitter.kind === kind &&
       sensor.sigma_deg === sigmaDeg &&
-      sensor.measurement_time_s === measurementS
+      sensor.measurement_time_s === measurementS &&
+      sensor.turn_rate_deg_s === turnRateDegS
     );
   });
   return found ?? null;

@@ -2,7 +2,7 @@
 import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
-import { emitterName } from "./emitterName";
+import { emitterName, namingEmitter } from "./emitterName";
 import { importanceWords } from "./importance";
 import { wayWords } from "./wayWords";
 import { authorityWords, checkName, phaseName, sourceName } from "./words";
@@ -63,7 +63,7 @@ export function eventWords({ event }: Recorded, units: UnitSystem, emitters: rea
   const words =
     event.kind === "priorities_changed"
       ? t("event.priorities_changed", { by: byWords(event.by), order: importanceWords(emitters, event.priorities) })
-      : wordsOf(event, units);
+      : wordsOf(event.kind === "alert_raised" ? { ...event, reason: namingEmitter(emitters, event.reason) } : event, units);
   return about === null ? words : `${emitterName(emitters, about)}: ${words}`;
 }
 

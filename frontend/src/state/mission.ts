@@ -16,6 +16,7 @@ import type {
 } from "../wire";
 import { type CraftState, emptyCraft, foldCraft } from "./craft";
 import { type At, type EmitterState, emptyEmitter, foldEmitter, type MutedSources, muteEmitter, sourceKey } from "./emitter";
+import { namingEmitter } from "./emitterName";
 import { inOrder } from "./importance";
 
 /** craftId, emitterId: whom it concerns; null of both: the whole mission. */
@@ -123,7 +124,8 @@ function foldSearch(state: MissionState, { event, at_utc: at, seq }: Recorded): 
     case "bearing_measured":
       return { ...state, placeNumber: Math.max(state.placeNumber, event.place_number) };
     case "alert_raised": {
-      const { alert_id: id, topic, level, reason, craft_id: craftId, emitter_id: emitterId } = event;
+      const { alert_id: id, topic, level, craft_id: craftId, emitter_id: emitterId } = event;
+      const reason = namingEmitter(state.spec?.emitters ?? [], event.reason);
       const alert: Alert = { id, topic, level, reason, craftId, emitterId, raisedAt: at, acknowledgedBy: null, cleared: false };
       return { ...state, alerts: [...state.alerts.filter((a) => a.id !== id), alert] };
     }

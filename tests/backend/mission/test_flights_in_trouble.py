@@ -59,10 +59,10 @@ async def test_a_mission_whose_facts_are_damaged_keeps_the_server_from_nothing(s
     mission_id = await stuck(stage)
     read = stage.journal.read
 
-    async def damaged(which: str, after: int = 0) -> list[Recorded]:
+    async def damaged(which: str, after: int = 0, most: int | None = None) -> list[Recorded]:
         if which == mission_id:
             raise JournalDamaged(MissionDamaged(mission_id, "it is cut off"))
-        return await read(which, after)
+        return await read(which, after, most)
 
     monkeypatch.setattr(stage.journal, "read", damaged)
     await stage.restart()

@@ -56,7 +56,7 @@ export const flight = {
     remedy: "Wurde die Antenne selbst gewechselt: landen und eine neue Mission beginnen.",
   },
   step_broke: {
-    text: "{step?take_off=Das Abheben|fly=Der Flug|measure=Das Messen|plan=Das Planen|belief=Das Erneuern der Karte|hold=Das Halten|return=Die Rückkehr|land=Die Landung} ist in Crossfix gescheitert.",
+    text: "{step?take_off=Das Abheben|fly=Der Flug|measure=Das Messen|plan=Das Planen|belief=Das Erneuern der Karte der Wahrscheinlichkeit|hold=Das Halten|return=Die Rückkehr|land=Die Landung} ist in Crossfix gescheitert.",
     remedy: LOOK,
   },
   watch_broke: {
@@ -73,7 +73,7 @@ export const flight = {
   },
 
   belief_broke: {
-    text: "Das Erneuern der Karte von {emitter_id} ist in Crossfix gescheitert: Kein nächster Ort wird geplant.",
+    text: "Wo {emitter_id} sein kann, ließ sich in Crossfix nicht neu berechnen: Kein nächster Ort wird geplant.",
     remedy: "Die letzte Peilung weglassen, oder die Rückkehr anordnen.",
   },
   headings_askew: {
