@@ -87,10 +87,7 @@ async def checklist(
         found += [_fact("safety", False, veto) for veto in vetoes]
         if not vetoes:
             found.append(_fact("safety", True, checks.StartAllowed()))
-            enough = await asyncio.to_thread(lasts_for, limits, unknown(), FEWEST_TURNS)
-            if limits.battery_telemetry and not enough:
-                few = checks.FewTurnsOnABattery(FEWEST_TURNS, limits.measurement_time_s)
-                found.append(_fact("battery", False, few, blocking=False))
+            found += await asyncio.to_thread(_battery, limits, situation())
     found.append(await _receiver(mission, equipment, listening))
     found.append(_pattern(mission, equipment))
     found += [] if antenna is None else [antenna]
@@ -155,9 +152,23 @@ def _fact(name: CheckName, ok: bool, reason: Reason, blocking: bool = True) -> C
     return CheckFact(name=name, ok=ok, reason=reason, blocking=blocking)
 
 
-def lasts_for(limits: Limits, endurance: Endurance, turns: int) -> bool:
-    """Whether a full battery does, with the way to the middle of the area and home, and the reserve."""
+def _battery(limits: Limits, situation: Situation) -> list[CheckFact]:
+    """Cautions about the turns that a full battery, or this one, is sure to last for."""
+    charge = situation.telemetry.battery_percent
+    if not limits.battery_telemetry or charge is None:
+        return []
+    if not lasts_for(100.0, limits, unknown(), FEWEST_TURNS):
+        few = checks.FewTurnsOnABattery(FEWEST_TURNS, limits.measurement_time_s)
+        return [_fact("battery", False, few, blocking=False)]
+    if not lasts_for(charge, limits, situation.endurance, FEWEST_TURNS):
+        low = checks.FewTurnsOnThisCharge(charge, FEWEST_TURNS, limits.measurement_time_s)
+        return [_fact("battery", False, low, blocking=False)]
+    return []
+
+
+def lasts_for(charge_percent: float, limits: Limits, endurance: Endurance, turns: int) -> bool:
+    """Whether a battery does, with the way to the middle of the area and home, and the reserve."""
     east, north = (float(x) for x in np.vstack(limits.problem.area).mean(axis=0))
     takes = endurance.way_percent([(east, north)], limits.speed_m_s, turns * limits.measurement_time_s)
     home = battery_to_return_percent(limits, limits.frame.to_geo(east, north), endurance, limits.altitude_relative_m)
-    return takes + home + limits.reserve_percent <= 100.0
+    return takes + home + limits.reserve_percent <= charge_percent

@@ -69,6 +69,21 @@ class FewTurnsOnABattery:
 
 
 @dataclass(frozen=True, slots=True)
+class FewTurnsOnThisCharge:
+    """turns: of turn_s each, that a full battery is taken to last for and this charge is not."""
+
+    charge_percent: float
+    turns: int
+    turn_s: float
+    code: Literal["few_turns_on_this_charge"] = "few_turns_on_this_charge"
+    english: ClassVar[Words] = Words(
+        "Battery at {charge_percent}: with the ways to the middle of the area and home, and the reserve, it is not sure "
+        "to last for {turns|turn|turns} of {turn_s}, and no search does with fewer.",
+        "Change the battery, or expect the craft to come home before it has found anything.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoSamples:
     code: Literal["no_samples"] = "no_samples"
     english: ClassVar[Words] = Words(
@@ -183,6 +198,7 @@ CheckReason = (
     | ReceiverTakesTurns
     | TurnTakesLong
     | FewTurnsOnABattery
+    | FewTurnsOnThisCharge
     | NoSamples
     | TagUnheard
     | PatternInUse

@@ -1054,6 +1054,10 @@ export const reasonsEn: ReasonTable = {
     text: "A turn takes {turn_s}. As long as wind and craft are not known, not even a full battery is sure to last for {turns} of them in the middle of the area, and no search does with fewer.",
     remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
   },
+  few_turns_on_this_charge: {
+    text: "Battery at {charge_percent}: with the ways to the middle of the area and home, and the reserve, it is not sure to last for {turns|turn|turns} of {turn_s}, and no search does with fewer.",
+    remedy: "Change the battery, or expect the craft to come home before it has found anything.",
+  },
   no_samples: {
     text: "The receiver delivers no samples.",
     remedy: "Check that it is plugged in and not in use by another program.",

@@ -236,3 +236,19 @@ async def test_turns_that_no_battery_lasts_for_twice_are_a_caution_and_those_it_
     never = await checked(Stage(), spec((beacon,)))
     assert isinstance(never["safety"].reason, safety.TurnBeyondBattery)
     assert never["safety"].blocking
+
+
+async def test_a_charge_that_lasts_for_one_turn_and_the_way_home_is_a_caution() -> None:
+    stage = Stage()
+    assert "battery" not in await checked(_charged(stage, 90.0))
+    low = await checked(_charged(stage, 45.0))
+    assert isinstance(low["battery"].reason, checks.FewTurnsOnThisCharge)
+    assert (low["battery"].ok, low["battery"].blocking, low["safety"].ok) == (False, False, True)
+    empty = await checked(_charged(stage, 20.0))
+    assert isinstance(empty["safety"].reason, safety.BatteryShort)
+    assert "battery" not in empty, "who may not start needs no caution"
+
+
+def _charged(stage: Stage, percent: float) -> Stage:
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=percent)
+    return stage

@@ -144,6 +144,12 @@ export const preflight = {
       "Weniger Sender oder ein Signal suchen, das öfter gesendet wird, oder die Reserve eines Fluggeräts senken, das lange in der " +
       "Luft bleibt.",
   },
+  few_turns_on_this_charge: {
+    text:
+      "Akku bei {charge_percent}: Mit den Wegen in die Mitte des Gebiets und nach Hause und der Reserve reicht er nicht sicher für " +
+      "{turns} Drehungen zu {turn_s}, und mit weniger kommt keine Suche aus.",
+    remedy: "Den Akku wechseln, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es etwas gefunden hat.",
+  },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
     remedy: "Prüfen, ob er angesteckt ist und kein anderes Programm ihn benutzt.",
