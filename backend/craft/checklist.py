@@ -26,6 +26,7 @@ from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
+from planner.types import FloatArray
 
 RECEIVER_WALL_S = 3.0
 FEWEST_TURNS = 2
@@ -154,21 +155,22 @@ def _fact(name: CheckName, ok: bool, reason: Reason, blocking: bool = True) -> C
 
 def _battery(limits: Limits, situation: Situation) -> list[CheckFact]:
     """Cautions about the turns that a full battery, or this one, is sure to last for."""
-    charge = situation.telemetry.battery_percent
+    charge, corners = situation.telemetry.battery_percent, np.vstack(limits.problem.area)
     if not limits.battery_telemetry or charge is None:
         return []
-    if not lasts_for(100.0, limits, unknown(), FEWEST_TURNS):
+    if not lasts_for(100.0, limits, unknown(), FEWEST_TURNS, corners.mean(axis=0)):
         few = checks.FewTurnsOnABattery(FEWEST_TURNS, limits.measurement_time_s)
         return [_fact("battery", False, few, blocking=False)]
-    if not lasts_for(charge, limits, situation.endurance, FEWEST_TURNS):
+    farthest = corners[np.hypot(*corners.T).argmax()]
+    if not lasts_for(charge, limits, situation.endurance, FEWEST_TURNS, farthest):
         low = checks.FewTurnsOnThisCharge(charge, FEWEST_TURNS, limits.measurement_time_s)
         return [_fact("battery", False, low, blocking=False)]
     return []
 
 
-def lasts_for(charge_percent: float, limits: Limits, endurance: Endurance, turns: int) -> bool:
-    """Whether a battery does, with the way to the middle of the area and home, and the reserve."""
-    east, north = (float(x) for x in np.vstack(limits.problem.area).mean(axis=0))
+def lasts_for(charge_percent: float, limits: Limits, endurance: Endurance, turns: int, out: FloatArray) -> bool:
+    """Whether a battery does, with the way out to (2,) m ENU and home, and the reserve."""
+    east, north = float(out[0]), float(out[1])
     takes = endurance.way_percent([(east, north)], limits.speed_m_s, turns * limits.measurement_time_s)
     home = battery_to_return_percent(limits, limits.frame.to_geo(east, north), endurance, limits.altitude_relative_m)
     return takes + home + limits.reserve_percent <= charge_percent

@@ -77,8 +77,8 @@ class FewTurnsOnThisCharge:
     turn_s: float
     code: Literal["few_turns_on_this_charge"] = "few_turns_on_this_charge"
     english: ClassVar[Words] = Words(
-        "Battery at {charge_percent}: with the ways to the middle of the area and home, and the reserve, it is not sure "
-        "to last for {turns|turn|turns} of {turn_s}, and no search does with fewer.",
+        "Battery at {charge_percent}: with the ways to the far end of the area and home, and the reserve, it is not "
+        "sure to last for {turns|turn|turns} of {turn_s}, and no search does with fewer.",
         "Change the battery, or expect the craft to come home before it has found anything.",
     )
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from air import still_air
 from airspace import airspace
@@ -284,9 +285,11 @@ def test_a_turn_that_no_battery_lasts_for_is_refused_in_its_own_words() -> None:
 
 def test_a_battery_lasts_for_turns_that_fit_beside_the_ways_and_the_reserve() -> None:
     calm, minute = still_air(0.05), replace(LIMITS, measurement_time_s=60.0)
-    assert lasts_for(100.0, minute, calm, 18)
-    assert not lasts_for(100.0, minute, calm, 26), "25 of 3 % each, and neither way nor reserve"
-    assert not lasts_for(50.0, minute, calm, 18)
-    assert not lasts_for(100.0, replace(minute, reserve_percent=90.0), calm, 2)
-    assert not lasts_for(100.0, replace(LIMITS, measurement_time_s=540.0), unknown(), 2), "a beacon's bursts"
-    assert lasts_for(100.0, replace(LIMITS, measurement_time_s=46.0), unknown(), 2), "a tag's pulses"
+    middle = np.vstack(LIMITS.problem.area).mean(axis=0)
+    assert lasts_for(100.0, minute, calm, 18, middle)
+    assert not lasts_for(100.0, minute, calm, 26, middle), "25 of 3 % each, and neither way nor reserve"
+    assert not lasts_for(50.0, minute, calm, 18, middle)
+    assert not lasts_for(100.0, minute, calm, 18, middle + 2_000.0)
+    assert not lasts_for(100.0, replace(minute, reserve_percent=90.0), calm, 2, middle)
+    assert not lasts_for(100.0, replace(LIMITS, measurement_time_s=540.0), unknown(), 2, middle), "a beacon's bursts"
+    assert lasts_for(100.0, replace(LIMITS, measurement_time_s=46.0), unknown(), 2, middle), "a tag's pulses"
