@@ -24,7 +24,7 @@ from planner.threads import in_parts
 from planner.types import FloatArray
 
 THREADS = 2
-"""Among which the places are shared out, where stretches of way make each of them dear."""
+"""Among which the places are shared out. Sums over them are those of two parts, on every machine."""
 WORTH_A_THREAD = 200
 """Places."""
 MOST_KEPT = 20_000
@@ -50,7 +50,11 @@ class Weigher:
         if self._kept is not None:
             return self._kept.keep(x, y, _told(x, y, self._known, THREADS)).log
         found = np.empty(len(x))
-        _log_evidence(x, y, self._known, found)
+
+        def work(part: slice) -> None:
+            _log_evidence(x[part], y[part], self._known, found[part])
+
+        in_parts(len(x), min(THREADS, len(x) // WORTH_A_THREAD), work)
         return found
 
     def shared_out(self, x: FloatArray, y: FloatArray, mass: FloatArray) -> SharedOut:
@@ -59,9 +63,14 @@ class Weigher:
         if self._kept is not None:
             told = self._kept.of(x, y) or _told(x, y, self._known, THREADS)
             return SharedOut(mass @ told.bias, mass @ told.scale, mass @ told.rate, told.bias @ self._nodes.bias)
-        found, mean = np.zeros_like(self._known.prior), np.empty(len(x))
-        _shared_out_over(x, y, mass, self._known, found, mean)
-        table = found.reshape(self._nodes.weight.shape)
+        of_part, mean = dict[int, FloatArray](), np.empty(len(x))
+
+        def work(part: slice) -> None:
+            found = of_part[part.start] = np.zeros_like(self._known.prior)
+            _shared_out_over(x[part], y[part], mass[part], self._known, found, mean[part])
+
+        in_parts(len(x), min(THREADS, len(x) // WORTH_A_THREAD), work)
+        table = np.sum([of_part[start] for start in sorted(of_part)], axis=0).reshape(self._nodes.weight.shape)
         return SharedOut(table.sum(axis=(0, 1)), table.sum(axis=(1, 2)), table.sum(axis=(0, 2)), mean)
 
 

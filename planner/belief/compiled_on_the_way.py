@@ -14,13 +14,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.belief.compiled_rows import blended, blended_more, copied, largest, mixed, rooted, times, times_each
-from planner.belief.compiled_way_tables import ACROSS, ALONG, COLUMNS, NEAREST, PSI_STEP, TURN, middle_of, table_of
+from planner.belief.compiled_rows import (
+    blended,
+    blended_more,
+    copied,
+    largest,
+    mixed,
+    rooted,
+    shifted,
+    times,
+    times_each,
+)
+from planner.belief.compiled_way_tables import ACROSS, ALONG, COLUMNS, NEAREST, TURN, middle_of, table_of
+from planner.belief.source_errors import EVEN_STEP, Nodes
 from planner.compiling import allocating, jit
 from planner.on_the_way import LEAST_INDEPENDENT, NEAR_M, Heard, Stretch, heard, worth_of
 from planner.types import FloatArray
 
-FINE_ENOUGH = np.deg2rad(1.0)
 RESCALED_EVERY = 16
 """Stretches: none multiplies by less than the rate of outliers, or by more than a bearing's peak."""
 LEAST = 1e-280
@@ -29,9 +39,9 @@ LEAST = 1e-280
 
 @jit
 def halvings_of(spacing):
-    """How often the step at which stretches are weighed is halved to the `spacing` of the nodes, rad."""
+    """How often EVEN_STEP is halved to the `spacing` of the nodes, rad."""
     found = 0
-    while spacing * 2.0 ** (found + 1) <= FINE_ENOUGH:
+    while spacing * 2.0 ** (found + 0.5) < EVEN_STEP:
         found += 1
     return found
 
@@ -43,25 +53,24 @@ def coarse_nodes(count, spacing):
 
 
 class Scratch(NamedTuple):
-    """Of n nodes at which stretches are weighed. coarse: (k e, n); found: (k, n); root: (n,). rows: (k, m) of the m
-    columns of a table that they span."""
+    """Of the n nodes at which stretches are weighed. coarse: (k e, n); found: (n,); root: (n,). row: (n + 2,) columns
+    of a table."""
 
     coarse: FloatArray
-    found: FloatArray
+    found: NDArray[np.float32]
     root: FloatArray
-    rows: NDArray[np.float32]
+    row: NDArray[np.float32]
 
 
 @allocating
 def scratch_of(count, spacing, scales, rates):
     """For `count` nodes of the bias, `spacing` rad apart."""
     coarse = coarse_nodes(count, spacing)
-    columns = int((coarse - 1) * spacing * (1 << halvings_of(spacing)) / PSI_STEP) + 5
     return Scratch(
         np.empty((scales * rates, coarse)),
-        np.empty((scales, coarse)),
+        np.empty(coarse, dtype=np.float32),
         np.empty(coarse),
-        np.empty((scales, columns), dtype=np.float32),
+        np.empty(coarse + 2, dtype=np.float32),
     )
 
 
@@ -77,8 +86,12 @@ class OnTheWay(NamedTuple):
     table: NDArray[np.float32]
 
 
-def on_the_way(stretches: Sequence[Stretch], scale: FloatArray) -> OnTheWay:
-    """Of one source, with these scales (s,) of its errors."""
+def on_the_way(stretches: Sequence[Stretch], grid: Nodes) -> OnTheWay:
+    """Of one source. Raises ValueError for nodes that are not `even`."""
+    halvings = np.log2(EVEN_STEP / grid.spacing)
+    if stretches and abs(halvings - round(halvings)) > 1e-9:
+        raise ValueError(f"stretches are weighed at even steps of the bias, not {grid.spacing} rad")
+    scale = grid.scale
     kept = [one for one in stretches if worth_of(one) >= LEAST_INDEPENDENT]
     middles = [middle_of(one) for one in kept]
     table = np.empty((len(kept), ACROSS, ALONG, len(scale), COLUMNS), dtype=np.float32)
@@ -103,34 +116,36 @@ def _near(x, y, heard, k):
 
 
 @jit
-def _look_up(off_x, off_y, way, k, bias, step, rows, found):
-    """found (s, n): f / c of stretch k at the biases `bias` + n step, for the emitter at (off_x, off_y) m from its
-    middle. rows: (k, m) scratch, of as many columns as they span."""
+def _weigh(off_x, off_y, way, k, bias, rate, scratch):
+    """Multiplies (1 - e) f / c + e of stretch k into the coarse nodes, `bias` the first of them, for the emitter at
+    (off_x, off_y) m from its middle: f / c linear across the stretch, of second degree along it and between columns."""
     table, scaled = way.table[k], 0.5 / (NEAREST * max(off_x * off_x + off_y * off_y, 1.0))
     across = (way.along[0, k] * off_y - way.along[1, k] * off_x) * scaled + 0.5
     along = (way.along[0, k] * off_x + way.along[1, k] * off_y) * scaled + 0.5
     across = min(max(across, 0.0), 0.999999) * (ACROSS - 1)
     along = min(max(along, 0.0), 1.0) * (ALONG - 1)
     psi = (np.arctan2(off_y, off_x) + bias) / (2.0 * np.pi)
-    psi = (psi - np.floor(psi)) * TURN + 1.0
-    a, b, first = int(across), min(max(int(along + 0.5), 1), ALONG - 2), min(int(psi), TURN) - 1
-    right, t, end = np.float32(across - a), np.float32(along - b), first + rows.shape[1]
-    left, half = np.float32(1.0) - right, np.float32(0.5)
-    behind, here, ahead = half * t * (t - np.float32(1.0)), np.float32(1.0) - t * t, half * t * (t + np.float32(1.0))
-    for s in range(found.shape[0]):
-        near, far = table[a, :, s, first:end], table[a + 1, :, s, first:end]
-        blended(rows[s], near[b - 1], far[b - 1], left * behind, right * behind)
-        blended_more(rows[s], near[b], far[b], left * here, right * here)
-        blended_more(rows[s], near[b + 1], far[b + 1], left * ahead, right * ahead)
-    at = psi - first
-    for n in range(found.shape[1]):
-        column = int(at + 0.5)
-        t = at - column
-        before, there, after = 0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)
-        for s in range(found.shape[0]):
-            row = rows[s]
-            found[s, n] = max(before * row[column - 1] + there * row[column] + after * row[column + 1], 0.0)
-        at += step
+    psi = (psi - np.floor(psi)) * TURN
+    a, b, first = int(across), min(max(int(along + 0.5), 1), ALONG - 2), min(int(psi + 0.5), TURN)
+    right, end = np.float32(across - a), first + len(scratch.row)
+    left = np.float32(1.0) - right
+    behind, here, ahead = _of_three(np.float32(along - b))
+    before, at, after = _of_three(np.float32(psi - first))
+    scales, rates = table.shape[2], len(rate)
+    for s in range(scales):
+        near, far = table[a, b - 1 : b + 2, s, first:end], table[a + 1, b - 1 : b + 2, s, first:end]
+        blended(scratch.row, near[0], near[1], near[2], left * behind, left * here, left * ahead)
+        blended_more(scratch.row, far[0], far[1], far[2], right * behind, right * here, right * ahead)
+        shifted(scratch.found, scratch.row, before, at, after)
+        for e in range(rates):
+            mixed(scratch.coarse[s * rates + e], scratch.found, 1.0 - rate[e], rate[e])
+
+
+@jit
+def _of_three(t):
+    """Weights of three neighbours for what lies t from the middle one: a parabola through them."""
+    half, one = np.float32(0.5), np.float32(1.0)
+    return half * t * (t - one), one - t * t, half * t * (t + one)
 
 
 @jit
@@ -168,21 +183,16 @@ def _spread_out(row, coarse, root, halvings):
 def weigh_stretches(x, y, way, bias, spacing, rate, scratch, table):
     """Multiplies (1 - e) f / c + e of every stretch into table (k e, b), for the emitter at (x, y), but for a factor
     whose logarithm is returned: hundreds of stretches leave the range of numbers."""
-    found, coarse, rates, weighed, log = scratch.found, scratch.coarse, len(rate), 0, 0.0
-    halvings = halvings_of(spacing)
-    step = spacing * (1 << halvings) / PSI_STEP
+    coarse, weighed, log = scratch.coarse, 0, 0.0
     coarse[:] = 1.0
     for k in range(len(way.x)):
         off_x, off_y = x - way.x[k], y - way.y[k]
         if off_x * off_x + off_y * off_y < way.reach[k] * way.reach[k] and _near(x, y, way.heard, k):
             continue
-        _look_up(off_x, off_y, way, k, bias[0], step, scratch.rows, found)
-        for s in range(found.shape[0]):
-            for e in range(rates):
-                mixed(coarse[s * rates + e], found[s], 1.0 - rate[e], rate[e])
+        _weigh(off_x, off_y, way, k, bias[0], rate, scratch)
         weighed += 1
         if weighed % RESCALED_EVERY == 0:
             log += _rescaled(coarse)
     for r in range(table.shape[0]):
-        _spread_out(table[r], coarse[r], scratch.root, halvings)
+        _spread_out(table[r], coarse[r], scratch.root, halvings_of(spacing))
     return log

@@ -44,17 +44,24 @@ def mixed(row, ratio, share, rest):
 
 
 @jit
-def blended(row, lower, upper, below, above):
-    """Two rows of a table, weighed."""
+def blended(row, first, second, third, of_first, of_second, of_third):
+    """Three rows of a table, weighed."""
     for b in range(len(row)):
-        row[b] = below * lower[b] + above * upper[b]
+        row[b] = of_first * first[b] + of_second * second[b] + of_third * third[b]
 
 
 @jit
-def blended_more(row, lower, upper, below, above):
+def blended_more(row, first, second, third, of_first, of_second, of_third):
     """The same, added to what the row holds."""
     for b in range(len(row)):
-        row[b] += below * lower[b] + above * upper[b]
+        row[b] += of_first * first[b] + of_second * second[b] + of_third * third[b]
+
+
+@jit
+def shifted(found, row, of_first, of_second, of_third):
+    """Each three neighbours of a row (n + 2,), weighed, where that is not negative."""
+    for n in range(len(found)):
+        found[n] = max(of_first * row[n] + of_second * row[n + 1] + of_third * row[n + 2], np.float32(0.0))
 
 
 @jit

@@ -68,7 +68,7 @@ def prepared(seen: Sightings, nodes: Nodes, weight: FloatArray, stretches: Seque
     )
     return Prepared(
         seen,
-        on_the_way(stretches, nodes.scale),
+        on_the_way(stretches, nodes),
         nodes.bias,
         nodes.spacing,
         nodes.scale,

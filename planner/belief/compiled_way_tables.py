@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.belief.compiled_rows import summed
-from planner.belief.source_errors import COARSEST_SPACING, LARGEST_BIAS
+from planner.belief.source_errors import EVEN_STEP, LARGEST_BIAS
 from planner.compiling import SOURCES, entry
 from planner.on_the_way import DIRECTIONS, FREEDOM, Stretch, heard
 from planner.threads import in_parts
@@ -28,25 +28,24 @@ ACROSS = 13
 ALONG = 7
 NEAREST = 1.0 / 36.0
 """1 / m, the largest w. Nobody is judged nearer than NEAR_M to the way, and the middle lies on it."""
-PHASES = 6
-"""Directions of the antenna's table from column to column."""
-TURN = DIRECTIONS // PHASES
+TURN = round(2.0 * np.pi / EVEN_STEP)
 """Columns once around."""
-PSI_STEP = 2.0 * np.pi / TURN
-COLUMNS = TURN + int((2.0 * LARGEST_BIAS + 3.0 * COARSEST_SPACING) / PSI_STEP) + 6
-"""Once around, and again as far as any nodes of the bias reach."""
+PHASES = DIRECTIONS // TURN
+"""Directions of the antenna's table from column to column."""
+COLUMNS = TURN + int(2.0 * LARGEST_BIAS / EVEN_STEP) + 8
+"""Once around, and again as far as the nodes of the bias reach."""
 SUMS = 4
 """Of weights, weighted residuals, their squares, and logarithms of variances."""
 LEAST_SQUARE = 1e-6
 """Of r as a reading has it, over r: an emitter may lie on a reading that is far from the middle."""
 MOST_LOG = 80.0
 """That a number of 32 bits holds."""
-KEPT = 200
-"""Tables, of 400 kilobytes each: every belief of a mission looks up the same ones."""
+KEPT = 150
+"""Tables, of half a megabyte each: every belief of a mission looks up the same ones."""
 THREADS = 2
 
 Table = NDArray[np.float32]
-"""(ACROSS, ALONG, s, COLUMNS) f / c for each scale, psi = PSI_STEP * (column - 1)."""
+"""(ACROSS, ALONG, s, COLUMNS) f / c for each scale, psi = EVEN_STEP * (column - 1)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +112,7 @@ def _entry_point(sources: int):
                         - known.power[0]
                         + 10.0 * np.log10(max(ahead * ahead + aside * aside, LEAST_SQUARE))
                     )
-                    turns = (np.arctan2(aside, ahead) - known.front[i] - PSI_STEP) / (2.0 * np.pi)
+                    turns = (np.arctan2(aside, ahead) - known.front[i] - EVEN_STEP) / (2.0 * np.pi)
                     step = int((turns - np.floor(turns)) * DIRECTIONS + 0.5) % DIRECTIONS
                     told = by_phase[step % PHASES, :, step // PHASES : step // PHASES + COLUMNS]
                     summed(told[0], told[1], told[2], told[3], rest, sums)

@@ -152,7 +152,7 @@ def error_nodes(prior: ErrorPrior, taken: Sequence[Bearing], stretches: Sequence
     bias at most what a bearing of its sigma does, and asks for nodes by that."""
     sharpest = float(min([*sightings(taken).sigma, *(one.sigma for one in stretches)]))
     as_bearings = sum((sharpest / one.sigma) ** 2 for one in stretches)
-    return nodes(prior, sharpest, len(taken) + math.ceil(as_bearings))
+    return nodes(prior, sharpest, len(taken) + math.ceil(as_bearings), even=bool(stretches))
 
 
 def by_source(bearings: Sequence[Bearing]) -> dict[str, list[Bearing]]:

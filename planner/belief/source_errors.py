@@ -26,6 +26,8 @@ one standard deviation apart is good to 2 exp(-2 pi^2), 5e-9, of a Gaussian's in
 NARROWEST_SCALE = 0.7
 FINEST_SPACING = np.deg2rad(0.25)
 COARSEST_SPACING = np.deg2rad(2.5)
+EVEN_STEP = np.deg2rad(1.0)
+"""Of the bias, at which stretches of way are weighed; a power of two of nodes lies in it where a source heard any."""
 NEGLIGIBLE_WEIGHT = 1e-7
 """Nodes at the ends of the range that are less probable than this are left out."""
 
@@ -120,13 +122,16 @@ class Nodes:
         )
 
 
-def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
-    """The grid for this many bearings of about `sigma` rad: fine enough for the bias that they leave.
+def nodes(prior: ErrorPrior, sigma: float, bearings: int, *, even: bool = False) -> Nodes:
+    """The grid for this many bearings of about `sigma` rad: fine enough for the bias that they leave. even: spaced by
+    EVEN_STEP over a power of two.
 
     The weight of a node is the prior's mass between its neighbours' middles, so a tau smaller than the spacing counts.
     """
     error = NARROWEST_SCALE * sigma / np.sqrt(max(bearings, 1))
     spacing = float(np.clip(NODE_SIGMAS * error, FINEST_SPACING, COARSEST_SPACING))
+    if even:
+        spacing = float(EVEN_STEP / 2.0 ** max(np.ceil(np.log2(EVEN_STEP / spacing) - 1e-9), 0.0))
     side = int(np.ceil(LARGEST_BIAS / spacing))
     bias = np.asarray(spacing * np.arange(-side, side + 1), dtype=np.float64)
     weight = bias_weights(bias, spacing, prior.spread) @ prior.spread_weight

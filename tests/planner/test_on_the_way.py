@@ -131,7 +131,7 @@ def test_the_compiled_evidence_is_that_of_the_readable_one() -> None:
     stretches = [stretch(turned, noise=3.0, seed=k) for k, turned in enumerate((90.0, 200.0, 40.0, 330.0))]
     bearing = Bearing(0.0, 0.0, 0.8, SIGMA, source="craft")
     for taken in ([], [bearing]):
-        grid = nodes(ErrorPrior(), SIGMA, 40)
+        grid = nodes(ErrorPrior(), SIGMA, 40, even=True)
         fast = compiled_evidence.evidence(x, y, sightings(taken), grid, stretches)
         plain = evidence.evidence(x, y, sightings(taken), grid, stretches)
         without = evidence.evidence(x, y, sightings(taken), grid)
@@ -144,7 +144,10 @@ def test_the_compiled_evidence_is_that_of_the_readable_one() -> None:
 def test_places_shared_out_to_threads_are_those_of_the_readable_one() -> None:
     rng = np.random.default_rng(8)
     x, y = rng.uniform(-150.0, 250.0, (2, 2 * compiled_evidence.WORTH_A_THREAD + 1))
-    stretches, grid = [stretch(200.0, noise=3.0), stretch(330.0, noise=3.0, seed=2)], nodes(ErrorPrior(), SIGMA, 4)
+    stretches, grid = (
+        [stretch(200.0, noise=3.0), stretch(330.0, noise=3.0, seed=2)],
+        nodes(ErrorPrior(), SIGMA, 4, even=True),
+    )
     seen = sightings([Bearing(0.0, 0.0, 0.8, SIGMA, source="craft")])
     fast, plain = (way.Weigher(seen, grid, stretches) for way in (compiled_evidence, evidence))
     assert fast.log(x, y) == pytest.approx(plain.log(x, y), abs=0.05)
@@ -156,7 +159,7 @@ def test_places_shared_out_to_threads_are_those_of_the_readable_one() -> None:
 def test_places_that_are_kept_no_more_are_weighed_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compiled_evidence, "MOST_KEPT", 50)
     x, y = np.random.default_rng(10).uniform(-150.0, 250.0, (2, 90))
-    seen, grid = sightings([Bearing(0.0, 0.0, 0.8, SIGMA, source="craft")]), nodes(ErrorPrior(), SIGMA, 4)
+    seen, grid = sightings([Bearing(0.0, 0.0, 0.8, SIGMA, source="craft")]), nodes(ErrorPrior(), SIGMA, 4, even=True)
     in_calls, at_once = (compiled_evidence.Weigher(seen, grid, [stretch(200.0, noise=3.0)]) for _ in range(2))
     for part in (slice(0, 30), slice(30, 60), slice(60, 75), slice(75, 90)):
         in_calls.log(x[part], y[part])
@@ -172,7 +175,7 @@ def test_places_that_are_kept_no_more_are_weighed_again(monkeypatch: pytest.Monk
 
 def test_a_stretch_that_fits_nowhere_speaks_as_loud_as_an_outlier_and_leaves_numbers() -> None:
     wild = replace(stretch(330.0), power_db=tuple(1e6 * (-1.0) ** k for k in range(len(stretch(330.0).power_db))))
-    grid = nodes(ErrorPrior(), SIGMA, 4)
+    grid = nodes(ErrorPrior(), SIGMA, 4, even=True)
     x, y = np.random.default_rng(9).uniform(-150.0, 250.0, (2, 20))
     log = compiled_evidence.Weigher(sightings([]), grid, [wild, stretch(90.0)]).log(x, y)
     assert np.isfinite(log).all()
@@ -182,7 +185,7 @@ def test_hundreds_of_stretches_stay_within_the_range_of_numbers() -> None:
     """A mission of twenty legs of 480 m has as many."""
     x, y = np.array([80.0, -120.0, 200.0]), np.array([90.0, 60.0, -10.0])
     stretches = [stretch(330.0, noise=2.0, seed=k) for k in range(900)]
-    grid = nodes(ErrorPrior(), SIGMA, 900)
+    grid = nodes(ErrorPrior(), SIGMA, 900, even=True)
     fast = compiled_evidence.evidence(x, y, sightings([]), grid, stretches)
     plain = evidence.evidence(x, y, sightings([]), grid, stretches)
     assert np.ptp(plain.log) > 710.0, "the case would show nothing"

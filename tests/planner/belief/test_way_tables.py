@@ -44,7 +44,7 @@ def around(one: Stretch, distance: float) -> tuple[FloatArray, FloatArray]:
 def test_a_stretch_says_the_same_near_and_far_on_every_side(distance: float, along: float, bent: float) -> None:
     one = stretch(along, bent)
     x, y = around(one, distance)
-    grid = nodes(ErrorPrior(), SIGMA, 4)
+    grid = nodes(ErrorPrior(), SIGMA, 4, even=True)
     fast = compiled_evidence.evidence(x, y, sightings([]), grid, [one])
     plain = evidence.evidence(x, y, sightings([]), grid, [one])
     assert np.ptp(plain.log) > 0.5, "the case would show nothing"
@@ -56,7 +56,7 @@ def test_a_stretch_says_the_same_near_and_far_on_every_side(distance: float, alo
 @pytest.mark.parametrize("bearings", [1, 2, 8, 300])
 def test_nodes_of_any_spacing_and_to_the_end_of_their_range_are_looked_up(bearings: int) -> None:
     widest = ErrorPrior(spread=np.radians([30.0]), spread_weight=ONE)
-    grid = nodes(widest, SIGMA, bearings)
+    grid = nodes(widest, SIGMA, bearings, even=True)
     assert grid.bias[-1] >= LARGEST_BIAS
     assert bearings != 300 or grid.spacing == FINEST_SPACING
     x, y = around(stretch(), 90.0)
@@ -68,6 +68,20 @@ def test_nodes_of_any_spacing_and_to_the_end_of_their_range_are_looked_up(bearin
         fast = compiled_evidence.node_evidence(*place, sightings([]), grid, [stretch()])
         plain = evidence.node_evidence(*place, sightings([]), grid, [stretch()])
         assert fast == pytest.approx(plain, abs=0.08)
+
+
+def test_nodes_between_which_no_table_has_columns_are_refused() -> None:
+    with pytest.raises(ValueError, match="even"):
+        compiled_evidence.Weigher(sightings([]), nodes(ErrorPrior(), SIGMA, 4), [stretch()])
+
+
+@pytest.mark.parametrize(
+    ("sigma_deg", "bearings", "spacing"), [(30.0, 1, 1.0), (6.0, 12, 1.0), (6.0, 60, 0.5), (2.0, 30, 0.25)]
+)
+def test_even_nodes_are_as_fine_as_the_bearings_ask_for(sigma_deg: float, bearings: int, spacing: float) -> None:
+    even, free = (nodes(ErrorPrior(), math.radians(sigma_deg), bearings, even=one) for one in (True, False))
+    assert math.degrees(even.spacing) == pytest.approx(spacing)
+    assert even.spacing <= free.spacing + 1e-12
 
 
 def test_the_middle_of_a_stretch_lies_along_it() -> None:
@@ -86,8 +100,9 @@ def test_readings_that_no_craft_took_leave_numbers() -> None:
         replace(one, gain_db=tuple(-1e4 * (k % 2) for k in range(36))),
     ]
     x, y = np.meshgrid(np.linspace(-500.0, 500.0, 41), np.linspace(-500.0, 500.0, 41))
+    grid = nodes(ErrorPrior(), SIGMA, 4, even=True)
     for some in wild:
-        found = compiled_evidence.evidence(x.ravel(), y.ravel(), sightings([]), nodes(ErrorPrior(), SIGMA, 4), [some])
+        found = compiled_evidence.evidence(x.ravel(), y.ravel(), sightings([]), grid, [some])
         assert all(np.isfinite(part).all() for part in found)
 
 
