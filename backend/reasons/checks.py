@@ -77,8 +77,8 @@ class FewTurnsOnThisCharge:
     turn_s: float
     code: Literal["few_turns_on_this_charge"] = "few_turns_on_this_charge"
     english: ClassVar[Words] = Words(
-        "Battery at {charge_percent}: with the ways to the far end of the area and home, and the reserve, it is not "
-        "sure to last for {turns|turn|turns} of {turn_s}, and no search does with fewer.",
+        "At {charge_percent} the battery may not last for {turns|turn|turns} of {turn_s}, the ways to the far end of "
+        "the area and home, and the reserve. No search takes fewer turns.",
         "Change the battery, or expect the craft to come home before it has found anything.",
     )
 

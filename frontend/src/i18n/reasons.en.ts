@@ -1055,7 +1055,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
   },
   few_turns_on_this_charge: {
-    text: "Battery at {charge_percent}: with the ways to the far end of the area and home, and the reserve, it is not sure to last for {turns|turn|turns} of {turn_s}, and no search does with fewer.",
+    text: "At {charge_percent} the battery may not last for {turns|turn|turns} of {turn_s}, the ways to the far end of the area and home, and the reserve. No search takes fewer turns.",
     remedy: "Change the battery, or expect the craft to come home before it has found anything.",
   },
   no_samples: {

@@ -146,8 +146,8 @@ export const preflight = {
   },
   few_turns_on_this_charge: {
     text:
-      "Akku bei {charge_percent}: Mit den Wegen ans ferne Ende des Gebiets und nach Hause und der Reserve reicht er nicht sicher für " +
-      "{turns} Drehungen zu {turn_s}, und mit weniger kommt keine Suche aus.",
+      "Bei {charge_percent} reicht der Akku vielleicht nicht für {turns} Drehungen zu {turn_s}, die Wege ans ferne Ende des Gebiets " +
+      "und nach Hause und die Reserve. Mit weniger Drehungen kommt keine Suche aus.",
     remedy: "Den Akku wechseln, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es etwas gefunden hat.",
   },
   no_samples: {
