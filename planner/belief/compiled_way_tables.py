@@ -24,8 +24,8 @@ from planner.compiling import SOURCES, entry
 from planner.on_the_way import DIRECTIONS, FREEDOM, Stretch, heard
 from planner.threads import in_parts
 
-ACROSS = 13
-ALONG = 7
+ACROSS, ALONG = 13, 7
+"""Nodes of w to either side of the stretch, and along it."""
 NEAREST = 1.0 / 36.0
 """1 / m, the largest w. Nobody is judged nearer than NEAR_M to the way, and the middle lies on it."""
 TURN = round(2.0 * np.pi / EVEN_STEP)
@@ -38,8 +38,8 @@ SUMS = 4
 """Of weights, weighted residuals, their squares, and logarithms of variances."""
 LEAST_SQUARE = 1e-6
 """Of r as a reading has it, over r: an emitter may lie on a reading that is far from the middle."""
-MOST_LOG = 80.0
-"""That a number of 32 bits holds."""
+MOST_LOG = 30.0
+"""Far more than readings of a craft say, and no more than the products of many stretches bear."""
 KEPT = 150
 """Tables, of half a megabyte each: every belief of a mission looks up the same ones."""
 THREADS = 2

@@ -102,7 +102,7 @@ def test_readings_that_no_craft_took_leave_numbers() -> None:
     x, y = np.meshgrid(np.linspace(-500.0, 500.0, 41), np.linspace(-500.0, 500.0, 41))
     grid = nodes(ErrorPrior(), SIGMA, 4, even=True)
     for some in wild:
-        found = compiled_evidence.evidence(x.ravel(), y.ravel(), sightings([]), grid, [some])
+        found = compiled_evidence.evidence(x.ravel(), y.ravel(), sightings([]), grid, [some] * 20)
         assert all(np.isfinite(part).all() for part in found)
 
 
