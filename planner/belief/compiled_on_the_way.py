@@ -87,10 +87,13 @@ class OnTheWay(NamedTuple):
 
 
 def on_the_way(stretches: Sequence[Stretch], grid: Nodes) -> OnTheWay:
-    """Of one source. Raises ValueError for nodes that are not `even`."""
+    """Of one source. Raises ValueError for nodes that are not `even`, or reach farther than a table: no kernel checks
+    an index."""
     halvings = np.log2(EVEN_STEP / grid.spacing)
-    if stretches and abs(halvings - round(halvings)) > 1e-9:
+    if stretches and (halvings < -1e-9 or abs(halvings - round(halvings)) > 1e-9):
         raise ValueError(f"stretches are weighed at even steps of the bias, not {grid.spacing} rad")
+    if stretches and TURN + coarse_nodes(len(grid.bias), grid.spacing) + 2 > COLUMNS:
+        raise ValueError(f"stretches are not tabulated for {len(grid.bias)} nodes {grid.spacing} rad apart")
     scale = grid.scale
     kept = [one for one in stretches if worth_of(one) >= LEAST_INDEPENDENT]
     middles = [middle_of(one) for one in kept]

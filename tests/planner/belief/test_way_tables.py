@@ -75,6 +75,16 @@ def test_nodes_between_which_no_table_has_columns_are_refused() -> None:
         compiled_evidence.Weigher(sightings([]), nodes(ErrorPrior(), SIGMA, 4), [stretch()])
 
 
+@pytest.mark.parametrize(("step_deg", "side", "why"), [(2.0, 13, "even"), (4.0, 6, "even"), (1.0, 40, "tabulated")])
+def test_nodes_farther_apart_or_beyond_the_table_are_refused(step_deg: float, side: int, why: str) -> None:
+    """A power of two of degrees is a whole number of steps, too; beyond its end a table is read from other memory."""
+    bias = np.radians(step_deg) * np.arange(-side, side + 1)
+    some = nodes(ErrorPrior(), SIGMA, 4, even=True)
+    grid = replace(some, bias=bias, bias_weight=np.full(len(bias), 1.0 / len(bias)), spacing=math.radians(step_deg))
+    with pytest.raises(ValueError, match=why):
+        compiled_evidence.Weigher(sightings([]), grid, [stretch()])
+
+
 @pytest.mark.parametrize(
     ("sigma_deg", "bearings", "spacing"), [(30.0, 1, 1.0), (6.0, 12, 1.0), (6.0, 60, 0.5), (2.0, 30, 0.25)]
 )
