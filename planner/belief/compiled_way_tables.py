@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from random import Random
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,12 +40,16 @@ LEAST_SQUARE = 1e-6
 """Of r as a reading has it, over r: an emitter may lie on a reading that is far from the middle."""
 MOST_LOG = 30.0
 """Far more than readings of a craft say, and no more than the products of many stretches bear."""
-KEPT = 150
+KEPT = 250
 """Tables, of half a megabyte each: every belief of a mission looks up the same ones."""
 THREADS = 2
 
 Table = NDArray[np.float32]
 """(ACROSS, ALONG, s, COLUMNS) f / c for each scale, psi = EVEN_STEP * (column - 1)."""
+
+
+_kept: dict[tuple[Stretch, tuple[float, ...]], Table] = {}
+_chance = Random(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +70,22 @@ def middle_of(stretch: Stretch) -> Middle:
     return Middle(float(x.mean()), float(y.mean()), (math.cos(angle), math.sin(angle)), float(np.hypot(*off).max()))
 
 
-@lru_cache(KEPT)
 def table_of(stretch: Stretch, scale: tuple[float, ...]) -> Table:
-    """Of a stretch that tells something."""
+    """Of a stretch that tells something; made once while KEPT suffice.
+
+    Beyond that any of them goes, by chance: beliefs ask for all of theirs in turn, and where the one that was asked for
+    longest ago goes, one too many leaves none to be found.
+    """
+    found = _kept.get((stretch, scale))
+    if found is None:
+        found = _tabulated(stretch, scale)
+        if len(_kept) >= KEPT:
+            _kept.pop(_chance.choice([*_kept]), None)
+        _kept[stretch, scale] = found
+    return found
+
+
+def _tabulated(stretch: Stretch, scale: tuple[float, ...]) -> Table:
     found = np.empty((ACROSS, ALONG, len(scale), COLUMNS), dtype=np.float32)
     known, middle = heard([stretch], np.array(scale)), middle_of(stretch)
     off = np.array([known.x - middle.x, known.y - middle.y])

@@ -121,3 +121,16 @@ def test_a_table_is_made_once_for_all_beliefs(monkeypatch: pytest.MonkeyPatch) -
     first = table_of(stretch(seed=11), scale)
     monkeypatch.setattr(compiled_way_tables, "_tabulate", None)
     assert table_of(stretch(seed=11), scale) is first
+
+
+def test_more_tables_than_are_kept_leave_most_of_them_to_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Stretch] = []
+    monkeypatch.setattr(compiled_way_tables, "_kept", {})
+    monkeypatch.setattr(compiled_way_tables, "KEPT", 20)
+    monkeypatch.setattr(compiled_way_tables, "_tabulated", lambda one, scale: made.append(one) or np.zeros(1))
+    mission = [stretch(seed=k) for k in range(22)]
+    for _ in range(10):
+        for one in mission:
+            table_of(one, (1.0,))
+    assert len(compiled_way_tables._kept) == 20
+    assert 22 < len(made) < 110
