@@ -92,7 +92,7 @@ def on_the_way(stretches: Sequence[Stretch], grid: Nodes) -> OnTheWay:
     halvings = np.log2(EVEN_STEP / grid.spacing)
     if stretches and (halvings < -1e-9 or abs(halvings - round(halvings)) > 1e-9):
         raise ValueError(f"stretches are weighed at even steps of the bias, not {grid.spacing} rad")
-    if stretches and TURN + coarse_nodes(len(grid.bias), grid.spacing) + 2 > COLUMNS:
+    if stretches and TURN + (len(grid.bias) - 1 >> round(halvings)) + 4 > COLUMNS:
         raise ValueError(f"stretches are not tabulated for {len(grid.bias)} nodes {grid.spacing} rad apart")
     scale = grid.scale
     kept = [one for one in stretches if worth_of(one) >= LEAST_INDEPENDENT]
