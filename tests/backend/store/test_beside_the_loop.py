@@ -25,7 +25,7 @@ FACTS = 1_200
 
 @pytest.fixture
 async def many(bench) -> journal.SqlJournal:
-    """A mission of so many facts, among them long ones, in a server that was started since."""
+    """A mission of FACTS facts, some of them long, read by a server that did not write it."""
     first = await bench.open()
     notes = ["x" * 2_000 if n % 10 == 0 else str(n) for n in range(FACTS - 1)]
     told = [HoldOrdered(craft_id="craft-1", by=note, reason=None) for note in notes]
