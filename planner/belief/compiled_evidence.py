@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.belief.compiled_cell import of_cell, reached, scratch, whole_of
-from planner.belief.compiled_rows import added, added_beside, dot, total
+from planner.belief.compiled_rows import added, added_beside, dot, times, total
 from planner.belief.compiled_tables import Prepared, prepared
 from planner.belief.evidence import Evidence, SharedOut, Sightings
 from planner.belief.source_errors import Nodes
@@ -75,9 +76,9 @@ class Weigher:
 
 
 class _Call(NamedTuple):
-    """row: of `told`, by the place's coordinates."""
+    """place: (c,) x + i y, m."""
 
-    row: dict[tuple[float, float], int]
+    place: NDArray[np.complex128]
     told: Evidence
 
 
@@ -89,28 +90,23 @@ class _Kept:
 
     def keep(self, x: FloatArray, y: FloatArray, told: Evidence) -> Evidence:
         """x, y (c,) m. Returns `told`."""
-        self._calls.append(_Call({place: row for row, place in enumerate(_places(x, y))}, told))
-        while sum(len(one.row) for one in self._calls) > MOST_KEPT:
+        self._calls.append(_Call(x + 1j * y, told))
+        while sum(len(one.place) for one in self._calls) > MOST_KEPT:
             self._calls.popleft()
         return told
 
     def of(self, x: FloatArray, y: FloatArray) -> Evidence | None:
         """Of the places (c,) x, y; None where one of them is not kept."""
-        wanted = _places(x, y)
-        missing = np.ones(len(wanted), dtype=bool)
-        found: Evidence | None = None
-        for call in self._calls:
-            rows = np.array([call.row.get(place, -1) for place in wanted])
-            held = rows >= 0
-            found = found or Evidence(*(np.empty((len(wanted), *some.shape[1:])) for some in call.told))
-            for whole, some in zip(found, call.told, strict=True):
-                whole[held] = some[rows[held]]
-            missing &= ~held
-        return None if missing.any() else found
-
-
-def _places(x: FloatArray, y: FloatArray) -> list[tuple[float, float]]:
-    return list(zip(x.tolist(), y.tolist(), strict=True))
+        if not self._calls:
+            return None
+        kept, wanted = np.concatenate([call.place for call in self._calls]), x + 1j * y
+        order = np.argsort(kept)
+        found = order[np.minimum(np.searchsorted(kept, wanted, sorter=order), len(kept) - 1)]
+        if (kept[found] != wanted).any():
+            return None
+        return Evidence(
+            *(np.concatenate(some)[found] for some in zip(*(call.told for call in self._calls), strict=True))
+        )
 
 
 def evidence(
@@ -197,19 +193,23 @@ def _entry_points(sources: int):
         for c in range(len(x)):
             low, high = reached(x[c], y[c], known, past)
             log = of_cell(x[c], y[c], known, past, low, high, apart, table, density, way)
-            whole = whole_of(known, low, high, apart, table)
-            out.log[c] = log + np.log(whole)
-            out.bias[c] = 0.0
-            out.scale[c] = 0.0
-            out.rate[c] = 0.0
+            bias, scale, rate = out.bias[c], out.scale[c], out.rate[c]
+            bias[:] = 0.0
+            scale[:] = 0.0
+            rate[:] = 0.0
             for r in range(len(apart)):
                 within_reach = known.before[r, high] - known.before[r, low]
                 row = apart[r] * (known.before[r, known.before.shape[1] - 1] - within_reach) + total(table[r, low:high])
-                out.scale[c, r // rates] += row / whole
-                out.rate[c, r % rates] += row / whole
-                added(out.bias[c, :], known.prior[r, :], 0.0, apart[r] / whole)
-                within = table[r, low:high]
-                added_beside(out.bias[c, low:high], within, known.prior[r, low:high], apart[r], 1.0 / whole)
+                scale[r // rates] += row
+                rate[r % rates] += row
+                added(bias[:low], known.prior[r, :low], 0.0, apart[r])
+                added(bias[low:high], table[r, low:high], 0.0, 1.0)
+                added(bias[high:], known.prior[r, high:], 0.0, apart[r])
+            whole = total(scale)
+            out.log[c] = log + np.log(whole)
+            times(bias, 1.0 / whole)
+            times(scale, 1.0 / whole)
+            times(rate, 1.0 / whole)
 
     @entry
     def node_evidence_of(x, y, before, known, found):

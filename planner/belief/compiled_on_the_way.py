@@ -17,9 +17,11 @@ from numpy.typing import NDArray
 from planner.belief.compiled_rows import (
     blended,
     blended_more,
-    copied,
+    by_fours,
+    by_twos,
     largest,
     mixed,
+    ratios,
     rooted,
     shifted,
     times,
@@ -28,13 +30,13 @@ from planner.belief.compiled_rows import (
 from planner.belief.compiled_way_tables import ACROSS, ALONG, COLUMNS, NEAREST, TURN, middle_of, table_of
 from planner.belief.source_errors import EVEN_STEP, Nodes
 from planner.compiling import allocating, jit
-from planner.on_the_way import LEAST_INDEPENDENT, NEAR_M, Heard, Stretch, heard, worth_of
-from planner.types import FloatArray
+from planner.on_the_way import LEAST_INDEPENDENT, NEAR_M, Stretch, worth_of
+from planner.types import FloatArray, IntArray
 
+MOST_HALVINGS = 2
+"""Of EVEN_STEP, down to FINEST_SPACING."""
 RESCALED_EVERY = 16
 """Stretches: none multiplies by less than the rate of outliers, or by more than a bearing's peak."""
-LEAST = 1e-280
-"""Of what stretches say of a node, beside the best of them: none is 0, by which the next would be divided."""
 
 
 @jit
@@ -53,12 +55,12 @@ def coarse_nodes(count, spacing):
 
 
 class Scratch(NamedTuple):
-    """Of the n nodes at which stretches are weighed. coarse: (k e, n); found: (n,); root: (n,). row: (n + 2,) columns
-    of a table."""
+    """Of the n nodes at which stretches are weighed. coarse: (k e, n); found: (n,); root: (n - 1,). row: (n + 2,)
+    columns of a table."""
 
     coarse: FloatArray
     found: NDArray[np.float32]
-    root: FloatArray
+    root: NDArray[np.float32]
     row: NDArray[np.float32]
 
 
@@ -69,16 +71,19 @@ def scratch_of(count, spacing, scales, rates):
     return Scratch(
         np.empty((scales * rates, coarse)),
         np.empty(coarse, dtype=np.float32),
-        np.empty(coarse),
+        np.empty(coarse - 1, dtype=np.float32),
         np.empty(coarse + 2, dtype=np.float32),
     )
 
 
 class OnTheWay(NamedTuple):
-    """heard: the stretches. x, y: (k,) m, their middles; along: (2, k); reach: (k,) m, beyond which no place is near.
-    table: (k, ...) as compiled_way_tables.Table."""
+    """first: (k + 1,) where the places of each stretch's readings begin in read_x, read_y (n,), m. x, y: (k,) m, their
+    middles; along: (2, k); reach: (k,) m, beyond which no place is near. table: (k, ...) as compiled_way_tables.Table.
+    """
 
-    heard: Heard
+    first: IntArray
+    read_x: FloatArray
+    read_y: FloatArray
     x: FloatArray
     y: FloatArray
     along: FloatArray
@@ -90,7 +95,7 @@ def on_the_way(stretches: Sequence[Stretch], grid: Nodes) -> OnTheWay:
     """Of one source. Raises ValueError for nodes that are not `even`, or reach farther than a table: no kernel checks
     an index."""
     halvings = np.log2(EVEN_STEP / grid.spacing)
-    if stretches and (halvings < -1e-9 or abs(halvings - round(halvings)) > 1e-9):
+    if stretches and min(abs(halvings - whole) for whole in range(MOST_HALVINGS + 1)) > 1e-9:
         raise ValueError(f"stretches are weighed at even steps of the bias, not {grid.spacing} rad")
     if stretches and TURN + (len(grid.bias) - 1 >> round(halvings)) + 4 > COLUMNS:
         raise ValueError(f"stretches are not tabulated for {len(grid.bias)} nodes {grid.spacing} rad apart")
@@ -101,7 +106,9 @@ def on_the_way(stretches: Sequence[Stretch], grid: Nodes) -> OnTheWay:
     for out, one in zip(table, kept, strict=True):
         out[:] = table_of(one, tuple(scale.tolist()))
     return OnTheWay(
-        heard(kept, scale),
+        np.cumsum([0, *(len(one.x) for one in kept)], dtype=np.int64),
+        np.array([v for one in kept for v in one.x]),
+        np.array([v for one in kept for v in one.y]),
         np.array([one.x for one in middles]),
         np.array([one.y for one in middles]),
         np.ascontiguousarray(np.array([one.along for one in middles]).reshape(-1, 2).T),
@@ -111,9 +118,9 @@ def on_the_way(stretches: Sequence[Stretch], grid: Nodes) -> OnTheWay:
 
 
 @jit
-def _near(x, y, heard, k):
-    for i in range(heard.first[k], heard.first[k + 1]):
-        if (x - heard.x[i]) ** 2 + (y - heard.y[i]) ** 2 < NEAR_M * NEAR_M:
+def _near(x, y, way, k):
+    for i in range(way.first[k], way.first[k + 1]):
+        if (x - way.read_x[i]) ** 2 + (y - way.read_y[i]) ** 2 < NEAR_M * NEAR_M:
             return True
     return False
 
@@ -165,21 +172,17 @@ def _rescaled(table):
 @jit
 def _spread_out(row, coarse, root, halvings):
     """A row (b,) times what stretches say at each node: coarse (n,) at every 2^halvings of them, its logarithm linear
-    between. root: (n,) scratch. Spoils `coarse`."""
-    for n in range(len(coarse)):
-        coarse[n] = max(coarse[n], LEAST)
-    copied(root, coarse)
-    for _ in range(halvings):
+    between. root: (n - 1,) scratch."""
+    if halvings == 0:
+        times_each(row, coarse)
+        return
+    ratios(root, coarse)
+    rooted(root)
+    if halvings == 1:
+        by_twos(row, coarse, root)
+    else:
         rooted(root)
-    for n in range(len(coarse) - 1):
-        root[n] = root[n + 1] / root[n]
-    stride, count = 1 << halvings, len(row)
-    for p in range(stride):
-        at = p
-        for n in range((count - p + stride - 1) >> halvings):
-            row[at] *= coarse[n]
-            at += stride
-        times_each(coarse, root)
+        by_fours(row, coarse, root)
 
 
 @jit
@@ -190,7 +193,7 @@ def weigh_stretches(x, y, way, bias, spacing, rate, scratch, table):
     coarse[:] = 1.0
     for k in range(len(way.x)):
         off_x, off_y = x - way.x[k], y - way.y[k]
-        if off_x * off_x + off_y * off_y < way.reach[k] * way.reach[k] and _near(x, y, way.heard, k):
+        if off_x * off_x + off_y * off_y < way.reach[k] * way.reach[k] and _near(x, y, way, k):
             continue
         _weigh(off_x, off_y, way, k, bias[0], rate, scratch)
         weighed += 1

@@ -11,6 +11,9 @@ import numpy as np
 
 from planner.compiling import jit
 
+SMALLEST = 1e-37
+"""Of a ratio: the smallest number of 32 bits, about."""
+
 
 @jit
 def interpolated(density, lower, upper, below, above):
@@ -65,6 +68,13 @@ def shifted(found, row, of_first, of_second, of_third):
 
 
 @jit
+def ratios(found, row):
+    """Each entry of a row (n + 1,), none of them negative, over the one before."""
+    for b in range(len(found)):
+        found[b] = min(max(row[b + 1] / max(row[b], SMALLEST), SMALLEST), 1.0 / SMALLEST)
+
+
+@jit
 def rooted(row):
     """The square root of each entry."""
     for b in range(len(row)):
@@ -72,8 +82,34 @@ def rooted(row):
 
 
 @jit
+def by_twos(row, coarse, root):
+    """A row (b,) times coarse (n,) at every second entry, and times the root (n - 1,) of its ratios between."""
+    whole = len(row) // 2
+    for n in range(whole):
+        first = coarse[n]
+        row[2 * n] *= first
+        row[2 * n + 1] *= first * np.float64(root[n])
+    if 2 * whole < len(row):
+        row[2 * whole] *= coarse[whole]
+
+
+@jit
+def by_fours(row, coarse, root):
+    """The same at every fourth, root: the fourth one."""
+    whole = len(row) // 4
+    for n in range(whole):
+        first, step = coarse[n], np.float64(root[n])
+        row[4 * n] *= first
+        row[4 * n + 1] *= first * step
+        row[4 * n + 2] *= first * (step * step)
+        row[4 * n + 3] *= first * (step * step * step)
+    for left in range(len(row) - 4 * whole):
+        row[4 * whole + left] *= coarse[whole] * np.float64(root[whole]) ** left
+
+
+@jit
 def times_each(row, other):
-    """Entry by entry."""
+    """Entry by entry of `row`."""
     for b in range(len(row)):
         row[b] *= other[b]
 

@@ -29,7 +29,7 @@ from planner.belief.grid import (
     prior_belief,
     smallest_set,
 )
-from planner.belief.source_errors import ErrorPrior, Nodes, SourceErrors, nodes
+from planner.belief.source_errors import EVEN_STEP, ErrorPrior, Nodes, SourceErrors, nodes
 from planner.detection import DetectionModel, Silence, silence_log_likelihood
 from planner.observation import validate_bearing
 from planner.on_the_way import Stretch
@@ -49,8 +49,10 @@ COARSEST_CELLS = 12
 DEEPEST_REFINEMENT = 16
 NO_MASS = 1e-16
 """Of a block: all that hold less hold nothing that a sum over the places would show."""
+NO_BIAS = 1e-12
+"""Of a value of the bias, beside the likeliest: a bearing multiplies it by ten thousand at most."""
 LEAST_DENSITY = 1e-7
-"""16 nats: what a leg says is two or three."""
+"""Of a cell or a value of the bias, beside the likeliest, 16 nats: what a leg says is two or three."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +110,7 @@ def unheard(
 def heard_on_the_way(belief: JointBelief, stretches: Sequence[Stretch]) -> JointBelief:
     """The belief with these stretches instead of those that it had, cropped and refined as after a bearing.
 
-    Last of all: cells that the bearings leave LEAST_DENSITY of the likeliest are looked at no more.
+    Last of all: cells and values of the bias that the bearings leave LEAST_DENSITY are looked at no more.
     """
     if not belief.folded:
         belief = replace(belief, stretches=tuple(stretches))
@@ -198,9 +200,23 @@ def _sources(belief: JointBelief, weighing: Weighing) -> list[_Source]:
     found: list[_Source] = []
     for name, taken in told_by(belief).items():
         prior, stretches = belief.prior_of(name), belief.stretches_of(name)
-        grid = belief.narrowed.get(name) or error_nodes(prior, taken, stretches)
+        least = LEAST_DENSITY if stretches else NO_BIAS
+        grid = belief.narrowed.get(name) or _still_possible(
+            error_nodes(prior, taken, stretches), belief.errors_of(name), least
+        )
         found.append(_Source(name, len(taken), prior, grid, weighing(sightings(taken), grid, stretches)))
     return found
+
+
+def _still_possible(grid: Nodes, before: SourceErrors | None, least: float) -> Nodes:
+    """The grid without the values of the bias that what was known before left less than `least` of the likeliest's
+    mass, at the ends of the range and in whole EVEN_STEPs: the rest of it stays as it was."""
+    if before is None:
+        return grid
+    left = before.nodes.bias[before.bias_mass > least * before.bias_mass.max()]
+    margin, steps = before.nodes.spacing + grid.spacing, (grid.bias - grid.bias[0]) / EVEN_STEP
+    low, high = ((end - grid.bias[0]) / EVEN_STEP for end in (left[0] - margin, left[-1] + margin))
+    return grid.among((steps > math.floor(low) - 1e-9) & (steps < math.ceil(high) + 1e-9))
 
 
 def _weighed(belief: JointBelief, sources: Sequence[_Source]) -> tuple[JointBelief, Places]:

@@ -76,7 +76,8 @@ def _in_question(grid: Nodes, known: Sequence[SourceErrors | None]) -> BoolArray
             return np.ones(len(grid.bias), dtype=bool)
         own = errors.nodes
         tiny = np.finfo(float).tiny
-        log[j] = np.interp(grid.bias, own.bias, np.log(np.maximum(errors.bias_mass, tiny) / own.bias_weight))
+        ratio = np.log(np.maximum(errors.bias_mass, tiny) / own.bias_weight)
+        log[j] = np.interp(grid.bias, own.bias, ratio, left=-np.inf, right=-np.inf)
     least = math.prod(float(weight[weight > 0.0].min()) for weight in (grid.scale_weight, grid.rate_weight))
     within = -math.log(NEGLIGIBLE_WEIGHT) - len(known) * math.log(least) + SPARE
     told = np.log(grid.bias_weight) + np.stack(told_by_others(list(log)))
