@@ -1,5 +1,6 @@
 // The suggested search, drafted: what nobody has to fill in, and what a server without missions begins with.
 import { signal } from "@preact/signals";
+import { t } from "../i18n";
 import * as api from "../sources/api";
 import { missionAddress } from "../state/route";
 import type { MissionSpec } from "../wire";
@@ -7,9 +8,15 @@ import type { MissionSpec } from "../wire";
 /** The mission that shows the slide as soon as its checks have passed; nothing moves before somebody slides. */
 export const slideNext = signal<string | null>(null);
 
+/** The server's, named in the page's language. */
+export async function suggestedSpec(): Promise<MissionSpec> {
+  const spec = (await api.defaults()).spec as MissionSpec;
+  return { ...spec, name: t("edit.name.suggested") || spec.name }; // the words may still be on their way
+}
+
 /** Where it is shown. */
 export async function draftSuggested(): Promise<string> {
-  const { mission_id: id } = await api.draftMission((await api.defaults()).spec as MissionSpec);
+  const { mission_id: id } = await api.draftMission(await suggestedSpec());
   slideNext.value = id;
   return missionAddress(id);
 }

@@ -699,6 +699,7 @@ export const de: Record<MessageKey, string> = {
   "edit.preset.beacon": "Notfunkbake",
   "edit.preset.interference": "Störer",
   "edit.name": "Name der Mission",
+  "edit.name.suggested": "Neue Suche",
   "edit.label": "Sender",
   "edit.frequency": "Frequenz",
   "edit.list":

@@ -270,6 +270,7 @@ export const pagesEn = {
   "edit.preset.beacon": "rescue beacon",
   "edit.preset.interference": "interference",
   "edit.name": "Name of the mission",
+  "edit.name.suggested": "New search",
   "edit.label": "Emitter",
   "edit.frequency": "Frequency",
   "edit.list":

@@ -1,6 +1,7 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
+import { suggestedSpec } from "../commands/suggested";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
@@ -32,7 +33,7 @@ const keyOf = (route: EditRoute) => (route.page === "edit" ? route.missionId : "
 async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested: boolean }> {
   if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, suggested: false };
   if (route.from !== null) return { spec: (await api.mission(route.from)).spec as MissionSpec, suggested: false };
-  return { spec: (await api.defaults()).spec as MissionSpec, suggested: true };
+  return { spec: await suggestedSpec(), suggested: true };
 }
 
 const FREQUENCY: NumberField = { kind: "number", path: `${EMITTER}.frequency_hz`, label: "edit.frequency", unit: "MHz", scale: 1e6 };
