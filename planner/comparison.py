@@ -13,7 +13,7 @@ from planner.belief.joint import JointBelief
 from planner.geometry import distance_to_convex
 from planner.options import PlannerOptions
 from planner.plan import expected_time_from
-from planner.policy.actions import action_space
+from planner.policy.actions import action_space, standoff_from
 from planner.policy.fisher import gain_beside_bias
 from planner.policy.rollout import TELLING_SHARE
 from planner.policy.several import Wanted, times_together
@@ -96,10 +96,11 @@ def rules_against(
             crossing, needed = np.rad2deg([problem.crossing.angles(xy)[0], problem.crossing.least])
             found.append(CrossesTooLittle(float(crossing), float(needed)))
         places = places[kept_places[1:]]
-    if problem.standoff > 0:
+    standoff = standoff_from(belief, problem)
+    if standoff > 0:
         region = confidence_region(belief)
         clearances = distance_to_convex(places, region)
-        kept = min(problem.standoff, float(np.sort(clearances)[-min(2, len(clearances))]))
+        kept = min(standoff, float(np.sort(clearances)[-min(2, len(clearances))]))
         clearance = float(distance_to_convex(xy, region)[0])
         if clearance < kept:
             found.append(NearerThanStandoff(clearance, kept))

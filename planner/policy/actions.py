@@ -49,10 +49,17 @@ def constrained_actions(problem: Problem, belief: GridBelief, usable: Usable | N
     if problem.crossing is not None:
         places = places if usable is None else usable(places)
         places = places[problem.crossing.crossed_from(places)]
-    if problem.standoff <= 0 or len(places) == 0:
+    standoff = standoff_from(belief, problem)
+    if standoff <= 0 or len(places) == 0:
         return places
     clearance = distance_to_convex(places, confidence_region(belief))
-    return places[clearance >= min(problem.standoff, np.sort(clearance)[-min(2, len(clearance))])]
+    return places[clearance >= min(standoff, np.sort(clearance)[-min(2, len(clearance))])]
+
+
+def standoff_from(belief: GridBelief, problem: Problem) -> float:
+    """r_min, m, to keep from this belief's C95 (6.1): none of a flat prior, whose C95 is the area itself, in which the
+    emitter was heard nowhere yet."""
+    return 0.0 if belief.flat_prior and belief.bearings == 0 else problem.standoff
 
 
 def without_refused(

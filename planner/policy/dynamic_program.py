@@ -16,7 +16,7 @@ from planner.kernels.value.model import nodes
 from planner.legs import far_enough
 from planner.motion import flight_time
 from planner.options import BasePolicy
-from planner.policy.actions import Usable, constrained_actions
+from planner.policy.actions import Usable, constrained_actions, standoff_from
 from planner.policy.ellipse import ellipse
 from planner.policy.fisher import fisher
 from planner.policy.value_table import ProgramTable, program_for
@@ -104,8 +104,9 @@ def _allowed(problem: Problem, belief: GridBelief, places: FloatArray, usable: U
         places = places[problem.crossing.crossed_from(places)]
     if problem.action_spacing is not None and problem.flight_area is not None:  # off the fence as a lattice's are
         places = places[distance_to_edges(places, problem.flight_area) >= 0.5 * problem.action_spacing]
-    if problem.standoff > 0 and len(places) > 0:
-        places = places[distance_to_convex(places, confidence_region(belief)) >= problem.standoff]
+    standoff = standoff_from(belief, problem)
+    if standoff > 0 and len(places) > 0:
+        places = places[distance_to_convex(places, confidence_region(belief)) >= standoff]
     return places
 
 

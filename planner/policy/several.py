@@ -26,7 +26,7 @@ from planner.belief.joint import JointBelief
 from planner.geometry import distance_to_convex
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, PlannerOptions
-from planner.policy.actions import action_space, without_refused
+from planner.policy.actions import action_space, standoff_from, without_refused
 from planner.policy.dynamic_program import stands_on
 from planner.policy.fisher import first_best, fisher, gain_beside_bias, information_gain
 from planner.policy.importance import mean_time, weights_of
@@ -320,7 +320,8 @@ def _telling(wanted: Wanted, gains: FloatArray, places: FloatArray) -> BoolArray
 def _detour(wanted: Wanted, gains: FloatArray, places: FloatArray) -> tuple[float, float]:
     """Of the places (n, 2) with these gains (n,), the one that tells most of this emitter, r_min off its C95 (6.1)."""
     clearance = distance_to_convex(places, confidence_region(wanted.belief))
-    far = clearance >= min(wanted.problem.standoff, float(np.sort(clearance)[-min(2, len(clearance))]))
+    standoff = standoff_from(wanted.belief, wanted.problem)
+    far = clearance >= min(standoff, float(np.sort(clearance)[-min(2, len(clearance))]))
     best = first_best(np.where(far, gains, 0.0))
     return float(places[best, 0]), float(places[best, 1])
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from backend.api.suggestion import suggested_mission, with_errors_estimated
-from backend.search.forecast import preview
+from backend.search.forecast import forecast, preview
 from backend.search.localization import localization
 from backend.search.planning import next_place_together
 from backend.spec import SensorSpec
@@ -32,6 +32,18 @@ def test_its_table_comes_with_the_package_so_that_no_first_plan_is_made_meanwhil
     task = localization(suggested_mission(HOME), HOME)
     assert program_for(task.problem) is shipped()[key_of(task.problem)]
     assert not isinstance(preview(task, HOME, threads=1).reason, PlannedMeanwhile)
+
+
+def test_it_turns_first_in_its_area_and_not_beyond_the_far_end():
+    """Home lies on its southern edge; flown across first, missions took half a minute longer."""
+    task = localization(suggested_mission(HOME), HOME)
+    first = preview(task, HOME, threads=1)
+    east, north = task.frame.to_enu(first.first_place)
+    assert math.hypot(east, north) < 110.0
+    assert first.mean_s is not None
+    beyond = forecast(task, (), HOME, task.place(0.0, 246.0), lambda _place, _way: ())
+    assert beyond.mean_s is not None
+    assert beyond.mean_s - first.mean_s > 30.0
 
 
 @pytest.mark.parametrize("sigma_deg", [1.6, 2.5, 5.0, 9.0, 15.0, 23.0])

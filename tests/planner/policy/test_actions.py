@@ -68,6 +68,16 @@ def test_no_place_is_nearer_to_c95_than_the_standoff():
     assert distance_to_convex(places, confidence_region(belief)).min() >= 50.0
 
 
+def test_before_the_first_bearing_an_area_alone_keeps_no_place_away():
+    """Its C95 is where the emitter is looked for: whoever kept off it would turn outside, across the area and back."""
+    prior = prior_belief(FIELD)
+    assert constrained_actions(FIELD, prior).tolist() == action_space(FIELD, prior).tolist()
+    thought_of = replace(FIELD, prior=GaussianPrior(150.0, 60.0, np.diag([400.0, 400.0])))
+    region = confidence_region(prior_belief(thought_of))
+    places = constrained_actions(thought_of, prior_belief(thought_of))
+    assert distance_to_convex(places, region).min() >= 50.0, "of a place that somebody thinks of it does"
+
+
 def test_the_standoff_shrinks_until_two_places_are_left():
     tight = replace(FIELD, flight_area=(rectangle(120, 40, 200, 100),))
     places = constrained_actions(replace(tight, standoff=500.0), fold(tight, TWO))
