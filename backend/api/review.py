@@ -15,12 +15,12 @@ from backend.api.another_antenna import another_antenna
 from backend.api.antenna_review import antenna_review
 from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
-from backend.api.heavy import beside
+from backend.api.heavy import apart
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
 from backend.api.services import Services
 from backend.api.what_if import SUPPOSED_KINDS, what_if
-from backend.beside import beside as beside_loop
+from backend.beside import beside
 from backend.events import FIRST_CRAFT, Recorded
 from backend.reasons.request import IqNotKept
 from backend.store.brought import raw_files
@@ -109,7 +109,7 @@ async def get_belief(
     recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
     if seq is not None:
         recorded = [record for record in recorded if record.seq <= seq]
-    frame = await beside(services, len(recorded), belief_frame, mission_id, recorded, lite, emitter)
+    frame = await apart(services, len(recorded), belief_frame, mission_id, recorded, lite, emitter)
     if frame is None:
         raise not_found("belief_at", str(seq)) if emitter is None else not_found("belief_about", emitter)
     return Response(frame, media_type="application/octet-stream")
@@ -122,7 +122,7 @@ async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: S
     recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
     antenna = await another_antenna(services, mission_id, recorded, request)
     async with services.planning:
-        found = await beside(services, SUPPOSED_TIMES * len(recorded), what_if, mission_id, recorded, request, antenna)
+        found = await apart(services, SUPPOSED_TIMES * len(recorded), what_if, mission_id, recorded, request, antenna)
     if found is None:
         raise not_found("belief_after", str(request.bearings))
     return found
@@ -133,7 +133,7 @@ async def get_antenna(mission_id: MissionId, services: ServicesDep, emitter: Emi
     """Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show."""
     await stored_mission(services, mission_id)
     recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
-    found = await beside(services, len(recorded), antenna_review, recorded, emitter, services.pattern)
+    found = await apart(services, len(recorded), antenna_review, recorded, emitter, services.pattern)
     if found is None:
         raise not_found("belief_about", str(emitter))
     return found
@@ -146,7 +146,7 @@ async def get_sweep(mission_id: MissionId, sweep_id: SweepId, services: Services
     entry = await services.journal.sweep(mission_id, sweep_id)
     if entry is None:
         raise not_found("sweep", sweep_id)
-    told = await beside_loop(len(entry.samples), lambda: summary.sweep_record(entry).model_dump_json())
+    told = await beside(len(entry.samples), lambda: summary.sweep_record(entry).model_dump_json())
     return Response(told, media_type="application/json")
 
 
@@ -155,7 +155,7 @@ async def get_track(mission_id: MissionId, services: ServicesDep, craft: CraftId
     """The flown path of a craft."""
     await stored_mission(services, mission_id)
     track = (await services.journal.tracks(mission_id)).get(craft, [])
-    told = await beside_loop(len(track), summary.track_text, mission_id, craft, track)
+    told = await beside(len(track), summary.track_text, mission_id, craft, track)
     return Response(told, media_type="application/json")
 
 
@@ -176,7 +176,7 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
         sweeps = await services.journal.sweeps(mission_id)
         making = partial(bundle, raw=await asyncio.to_thread(raw_files, mission_id, sweeps, tracks, ways))
     return Response(
-        await beside(services, len(recorded), making, recorded, tracks),
+        await apart(services, len(recorded), making, recorded, tracks),
         media_type=MEDIA_TYPES[format],
         headers=headers,
     )
