@@ -24,7 +24,9 @@ from backend.beside import beside
 from backend.events import FIRST_CRAFT, Recorded
 from backend.reasons.request import IqNotKept
 from backend.store.brought import raw_files
+from backend.store.handed_over import FactsDamaged, made_of
 from backend.store.iq_folder import archive_size, archived
+from backend.store.reading import damaged
 from backend.store.ways_files import WaysFiles
 from backend.wire import export
 from backend.wire.bundle import bundle
@@ -164,22 +166,22 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     """A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal), mcap (Foxglove), cot (a
     data package for TAK), bundle (a zip with all of them), sigmf (the IQ of imported recordings as a SigMF archive; 404
     where none was kept)."""
-    await stored_mission(services, mission_id)
+    digest = await stored_mission(services, mission_id)
     headers = {"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'}
     if format == "sigmf":
         return await _kept_iq(services, mission_id, headers)
-    recorded = await services.journal.read(mission_id)
+    facts = await services.journal.hand_over(mission_id)
     tracks = await services.journal.tracks(mission_id)
     making = EXPORTS[format]
     if format == "bundle":
         ways = await asyncio.to_thread(WaysFiles.of_settings(services.settings).content, mission_id)
         sweeps = await services.journal.sweeps(mission_id)
         making = partial(bundle, raw=await asyncio.to_thread(raw_files, mission_id, sweeps, tracks, ways))
-    return Response(
-        await apart(services, len(recorded), making, recorded, tracks),
-        media_type=MEDIA_TYPES[format],
-        headers=headers,
-    )
+    try:
+        content = await apart(services, digest.last_seq, made_of, facts, making, tracks)
+    except FactsDamaged as error:
+        raise damaged(mission_id, error) from error
+    return Response(content, media_type=MEDIA_TYPES[format], headers=headers)
 
 
 async def _kept_iq(services: Services, mission_id: str, headers: dict[str, str]) -> StreamingResponse:

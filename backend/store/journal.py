@@ -36,6 +36,7 @@ from backend.store.entries import (
     to_records,
     to_row,
 )
+from backend.store.handed_over import HandedOver
 from backend.store.reading import ANY, PlaceInList, StoredFacts, Wanted
 from backend.store.spool import Spool
 from backend.store.written import Written, left_in_database
@@ -299,6 +300,19 @@ class SqlJournal:
         here = [record for record in known.recorded if record.event.kind in kinds]
         return [record for record in stored if record.seq <= known.before] + here
 
+    async def hand_over(self, mission_id: str) -> HandedOver:
+        """What `read` gives, for a process of its own. Raises JournalUnavailable."""
+        known = self._written.get(mission_id)
+        stored = HandedOver((), {})
+        if known is None or known.before:
+            stored = await self._stored.hand_over(mission_id, PIECE, None if known is None else known.before)
+        recorded = [] if known is None else known.here(0, None)
+        here = [
+            await asyncio.to_thread(_spooled, mission_id, recorded[at : at + PIECE])
+            for at in range(0, len(recorded), PIECE)
+        ]
+        return HandedOver((*stored.pieces, *here), stored.imports)
+
     async def mission(self, mission_id: str) -> MissionDigest | None:
         """With what waits in the spool; None for an unknown mission."""
         if mission_id in self._written:
@@ -375,6 +389,10 @@ def _of_this_installation(recorded: Sequence[Recorded]) -> Sequence[Recorded]:
 
 def _rows(recorded: Sequence[Recorded]) -> list[EventRow]:
     return [to_row(record.seq, record.at_utc, record.event) for record in recorded]
+
+
+def _spooled(mission_id: str, recorded: Sequence[Recorded]) -> bytes:
+    return EventsEntry(mission_id, tuple(_rows(recorded))).encode()
 
 
 def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:

@@ -15,6 +15,7 @@ from backend.spec import MissionSpec, Place, Polygon
 from backend.store import written
 from backend.store.digest import fold
 from backend.store.entries import EventRow
+from backend.store.handed_over import FactsDamaged, HandedOver, made_of
 from backend.store.journal import SqlJournal
 from backend.store.written import Written
 
@@ -78,6 +79,7 @@ async def test_what_waits_in_the_spool_is_read_behind_what_is_stored(labelled: S
     assert await labelled.read("m") == [*stored, *waiting]
     assert await labelled.read("m", 2, len(stored)) == [*stored, *waiting][2:][: len(stored)]
     assert (await labelled.read_kinds("m", ["mission_labelled"]))[-2:] == waiting
+    assert (await labelled.hand_over("m")).recorded() == [*stored, *waiting]
     other.execute("ROLLBACK")
     other.close()
     await labelled.start_up()
@@ -90,6 +92,26 @@ async def test_one_under_way_is_kept_whole(bench) -> None:
     journal = await bench.open()
     await journal.append("m", [LABEL])
     assert journal._written["m"].recorded == await read_anew(bench)
+
+
+@pytest.mark.parametrize("facts", [DRAFT, OVER[:-1]], ids=["a draft", "under way"])
+async def test_it_is_handed_over_whole_out_of_memory_too(bench, facts) -> None:
+    journal = await bench.open()
+    await journal.append("m", facts)
+    handed = await journal.hand_over("m")
+    assert handed.recorded() == await journal.read("m") == await read_anew(bench)
+    assert len(handed.pieces) == -(-len(facts) // 7)
+    assert await (await bench.open("third.spool")).hand_over("m") == handed
+    assert await journal.hand_over("nothing") == HandedOver((), {})
+
+
+async def test_what_is_no_fact_is_damage(bench) -> None:
+    journal = await bench.open()
+    await journal.append("m", DRAFT)
+    (piece, *others) = (await journal.hand_over("m")).pieces
+    torn = HandedOver((piece.replace(b"hold_ordered", b"hold_torn"), *others), {})
+    with pytest.raises(FactsDamaged, match="hold_torn"):
+        made_of(torn, lambda _recorded, _tracks: "", {})
 
 
 @given(st.integers(0, 12), st.integers(0, 12), st.integers(0, 25), st.none() | st.integers(0, 25))
