@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -87,6 +87,10 @@ class Journal(Protocol):
         """The events after number `after`, in order, the first `most` of them; empty for an unknown mission.
 
         Raises JournalUnavailable."""
+        ...
+
+    async def read_kinds(self, mission_id: str, kinds: Collection[str]) -> list[Recorded]:
+        """The events of these kinds only, in order. Raises JournalUnavailable."""
         ...
 
     async def listed(self, mission_id: str) -> Listed | None:

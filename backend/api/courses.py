@@ -11,7 +11,7 @@ from shapely.geometry import Point, shape
 
 from backend.api.another_antenna import AnotherAntenna, another_antenna
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
-from backend.api.heavy import beside
+from backend.api.heavy import apart
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.review import EmitterId
@@ -56,7 +56,7 @@ async def get_courses(mission_id: MissionId, services: ServicesDep, emitter: Emi
         except MissionInputError as error:
             wanted[name] = asked, None, carried(error.reason)
     async with services.planning:
-        found = await beside(services, (1 + len(wanted)) * len(recorded), courses, recorded, wanted, emitter)
+        found = await apart(services, (1 + len(wanted)) * len(recorded), courses, recorded, wanted, emitter)
     if found is None:
         raise not_found("belief_about", str(emitter))
     about, ended_s, bearings_s, each = found

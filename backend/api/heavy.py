@@ -19,7 +19,7 @@ LONG_FACTS = 500
 """A mission of some hundred bearings. Below, handing it over costs more than the work."""
 
 
-async def beside(services: Services, facts: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+async def apart(services: Services, facts: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """The result of `work`, a function of a module that asks nobody. facts: how many it works on. Raises ApiProblem."""
     if facts < LONG_FACTS:
         async with services.beside:

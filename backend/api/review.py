@@ -15,16 +15,18 @@ from backend.api.another_antenna import another_antenna
 from backend.api.antenna_review import antenna_review
 from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
-from backend.api.heavy import beside
+from backend.api.heavy import apart
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
 from backend.api.services import Services
 from backend.api.what_if import SUPPOSED_KINDS, what_if
-from backend.beside import beside as beside_loop
+from backend.beside import beside
 from backend.events import FIRST_CRAFT, Recorded
 from backend.reasons.request import IqNotKept
 from backend.store.brought import raw_files
+from backend.store.handed_over import FactsDamaged, made_of
 from backend.store.iq_folder import archive_size, archived
+from backend.store.reading import damaged
 from backend.store.ways_files import WaysFiles
 from backend.wire import export
 from backend.wire.bundle import bundle
@@ -109,7 +111,7 @@ async def get_belief(
     recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
     if seq is not None:
         recorded = [record for record in recorded if record.seq <= seq]
-    frame = await beside(services, len(recorded), belief_frame, mission_id, recorded, lite, emitter)
+    frame = await apart(services, len(recorded), belief_frame, mission_id, recorded, lite, emitter)
     if frame is None:
         raise not_found("belief_at", str(seq)) if emitter is None else not_found("belief_about", emitter)
     return Response(frame, media_type="application/octet-stream")
@@ -122,7 +124,7 @@ async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: S
     recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
     antenna = await another_antenna(services, mission_id, recorded, request)
     async with services.planning:
-        found = await beside(services, SUPPOSED_TIMES * len(recorded), what_if, mission_id, recorded, request, antenna)
+        found = await apart(services, SUPPOSED_TIMES * len(recorded), what_if, mission_id, recorded, request, antenna)
     if found is None:
         raise not_found("belief_after", str(request.bearings))
     return found
@@ -133,7 +135,7 @@ async def get_antenna(mission_id: MissionId, services: ServicesDep, emitter: Emi
     """Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show."""
     await stored_mission(services, mission_id)
     recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
-    found = await beside(services, len(recorded), antenna_review, recorded, emitter, services.pattern)
+    found = await apart(services, len(recorded), antenna_review, recorded, emitter, services.pattern)
     if found is None:
         raise not_found("belief_about", str(emitter))
     return found
@@ -146,7 +148,7 @@ async def get_sweep(mission_id: MissionId, sweep_id: SweepId, services: Services
     entry = await services.journal.sweep(mission_id, sweep_id)
     if entry is None:
         raise not_found("sweep", sweep_id)
-    told = await beside_loop(len(entry.samples), lambda: summary.sweep_record(entry).model_dump_json())
+    told = await beside(len(entry.samples), lambda: summary.sweep_record(entry).model_dump_json())
     return Response(told, media_type="application/json")
 
 
@@ -155,7 +157,7 @@ async def get_track(mission_id: MissionId, services: ServicesDep, craft: CraftId
     """The flown path of a craft."""
     await stored_mission(services, mission_id)
     track = (await services.journal.tracks(mission_id)).get(craft, [])
-    told = await beside_loop(len(track), summary.track_text, mission_id, craft, track)
+    told = await beside(len(track), summary.track_text, mission_id, craft, track)
     return Response(told, media_type="application/json")
 
 
@@ -164,22 +166,22 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     """A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal), mcap (Foxglove), cot (a
     data package for TAK), bundle (a zip with all of them), sigmf (the IQ of imported recordings as a SigMF archive; 404
     where none was kept)."""
-    await stored_mission(services, mission_id)
+    digest = await stored_mission(services, mission_id)
     headers = {"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'}
     if format == "sigmf":
         return await _kept_iq(services, mission_id, headers)
-    recorded = await services.journal.read(mission_id)
+    facts = await services.journal.hand_over(mission_id)
     tracks = await services.journal.tracks(mission_id)
     making = EXPORTS[format]
     if format == "bundle":
         ways = await asyncio.to_thread(WaysFiles.of_settings(services.settings).content, mission_id)
         sweeps = await services.journal.sweeps(mission_id)
         making = partial(bundle, raw=await asyncio.to_thread(raw_files, mission_id, sweeps, tracks, ways))
-    return Response(
-        await beside(services, len(recorded), making, recorded, tracks),
-        media_type=MEDIA_TYPES[format],
-        headers=headers,
-    )
+    try:
+        content = await apart(services, digest.last_seq, made_of, facts, making, tracks)
+    except FactsDamaged as error:
+        raise damaged(mission_id, error) from error
+    return Response(content, media_type=MEDIA_TYPES[format], headers=headers)
 
 
 async def _kept_iq(services: Services, mission_id: str, headers: dict[str, str]) -> StreamingResponse:

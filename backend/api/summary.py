@@ -95,7 +95,7 @@ def _found(emitter: EmitterState) -> EmitterFound:
         bearings=len(emitter.bearings),
         estimate=None if belief is None else belief.estimate,
         localized=belief is not None and belief.localized,
-        not_yet=[NoBearingYet()] if belief is None else belief.not_yet,
+        not_yet=[NoBearingYet()] if belief is None and not emitter.bearings else list(emitter.not_yet),
     )
 
 

@@ -20,7 +20,7 @@ from backend.reasons.request import FieldInvalid
 from backend.search.area import centre_of
 from backend.search.band import check_band
 from backend.search.errors import MissionConflict, MissionInputError
-from backend.search.importing import Upload, import_facts, imported_before
+from backend.search.importing import OF_IMPORTS, Upload, import_facts, imported_before
 from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
 from backend.search.never_stop import check_never_stop
@@ -98,7 +98,7 @@ class Drafts:
         """
         equipment, craft = self.equipment, self.equipment.first
         async with self.records.lock(mission_id):
-            recorded = await self.records.read(mission_id)
+            recorded = await self.records.of_kinds(mission_id, OF_IMPORTS)
             before = imported_before(recorded, upload.recording_id)
             if before:
                 return before, True
@@ -123,7 +123,8 @@ class Drafts:
             else:
                 bearings = tuple(fact for fact in found.facts if not isinstance(fact, BeliefUpdated))
                 await self.flights.give(mission_id, BearingsArrived(bearings))
-            new = imported_before(await self.records.read(mission_id), upload.recording_id)
+            recorded = await self.records.of_kinds(mission_id, OF_IMPORTS)
+            new = imported_before(recorded, upload.recording_id)
         log.info("mission %s: %s imported by %s", mission_id, upload.filename, by)
         return new, False
 

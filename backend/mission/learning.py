@@ -7,13 +7,12 @@ import asyncio
 import logging
 from collections.abc import Sequence
 
-from backend.beside import beside
 from backend.events import AntennaChecked, MissionStarted, Recorded
 from backend.mission.equipment import MissionEquipment
 from backend.mission.runner import MissionRunner
-from backend.mission.state import fold
 from backend.search.errors import MissionInputError
 from backend.search.lessons import lesson, lesson_of_check
+from backend.search.state import SearchState
 from backend.search.task import search_task
 from backend.spec import SensorSpec
 from planner.types import PlannerError
@@ -33,12 +32,14 @@ async def learn(equipment: MissionEquipment, runner: MissionRunner) -> None:
             log.error("mission %s: its bearings taught nothing of %s: %s", mission_id, craft_id, error)
 
 
-async def learn_from_truth(equipment: MissionEquipment, mission_id: str, recorded: Sequence[Recorded]) -> None:
+async def learn_from_truth(
+    equipment: MissionEquipment, mission_id: str, search: SearchState, recorded: Sequence[Recorded]
+) -> None:
     """Where an emitter was is known now, or no longer: what the flight taught is judged again by the facts so far.
+    recorded: the starts of its craft.
 
     Only what is still kept is: a flight from before a calibration, forgotten since, stays forgotten. Never raises.
     """
-    search = (await beside(len(recorded), fold, recorded)).search
     if search.stage != "ended" or search.home is None:
         return
     for started in (r.event for r in recorded if isinstance(r.event, MissionStarted) and r.event.antenna is not None):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from backend.beside import beside
 from backend.events import Event, Recorded
@@ -39,17 +39,18 @@ class Records:
         """The same one for every caller, made at the first call."""
         return self._locks.setdefault(mission_id, asyncio.Lock())
 
-    async def read(self, mission_id: str) -> list[Recorded]:
-        """Raises MissionNotFound."""
-        recorded = await self._journal.read(mission_id)
+    async def of_kinds(self, mission_id: str, kinds: Collection[str]) -> list[Recorded]:
+        """Its facts of these kinds only, in order. Raises MissionNotFound."""
+        recorded = await self._journal.read_kinds(mission_id, kinds)
         if not recorded:
-            raise MissionNotFound(mission_id)
+            await self.listed(mission_id)
         return recorded
 
-    async def load(self, mission_id: str) -> tuple[MissionState, int]:
-        """The state, and the number of the last fact. A large mission is folded a piece at a time: the garbage
-        collector stops everything for as long as it looks at all its facts at once. Raises MissionNotFound."""
-        state, last_seq = MissionState(), 0
+    async def load(self, mission_id: str, known: tuple[MissionState, int] | None = None) -> tuple[MissionState, int]:
+        """The state, and the number of the last fact. known: what an earlier call gave; only what came since is read.
+        A large mission is folded a piece at a time: the garbage collector stops everything for as long as it looks at
+        all its facts at once. Raises MissionNotFound."""
+        state, last_seq = (MissionState(), 0) if known is None else known
         while piece := await self._journal.read(mission_id, last_seq, PIECE):
             state = await beside(len(piece), fold_on, state, piece)
             last_seq = piece[-1].seq

@@ -93,7 +93,8 @@ class Reports:
 
     async def _by_the_same(self, mission_id: str, whose: Callable[[Event], str | None], by: str, field: str) -> None:
         """Raises MissionInputError when the newest such fact is somebody else's."""
-        named = [who for recorded in await self.records.read(mission_id) if (who := whose(recorded.event)) is not None]
+        told = await self.records.of_kinds(mission_id, ("bearing_excluded", "source_mute_changed"))
+        named = [who for recorded in told if (who := whose(recorded.event)) is not None]
         if named and named[-1] != by:
             raise MissionInputError(refusals.LeftOutByAnother(named[-1]), field)
 
@@ -113,7 +114,7 @@ class Reports:
             await self.records.settle_beliefs(mission_id)
 
     async def _stored(self, mission_id: str, bearing_id: str) -> Recorded | None:
-        for recorded in await self.records.read(mission_id):
+        for recorded in await self.records.of_kinds(mission_id, ("bearing_measured",)):
             if isinstance(recorded.event, BearingMeasured) and recorded.event.bearing_id == bearing_id:
                 return recorded
         return None

@@ -32,6 +32,7 @@ from backend.spec import Place
 
 MOST_VARIANTS = 12
 """Of one mission: each is computed again whenever they are compared."""
+VARIANTS = ("variant_kept", "variant_dropped")
 
 
 def variants_of(recorded: Iterable[Recorded]) -> dict[str, Supposition]:
@@ -68,15 +69,17 @@ class Review:
 
         Raises MissionInputError for an emitter that is not looked for.
         """
-        state, _ = await self.records.load(mission_id)
-        emitters = tuple(state.search.emitters)
+        known = await self.records.load(mission_id)
+        emitters = tuple(known[0].search.emitters)
         if emitter_id is None and len(emitters) != 1:
             raise MissionInputError(WhichEmitter(len(emitters)), "emitter_id")
         about = emitters[0] if emitter_id is None else emitter_id
         if about not in emitters:
             raise MissionInputError(refusals.NoSuchEmitter(about), "emitter_id")
         await self._record(mission_id, TruthNoted(emitter_id=about, place=place, accuracy_m=accuracy_m, how=how, by=by))
-        await learn_from_truth(self.flights.equipment, mission_id, await self.records.read(mission_id))
+        state, _ = await self.records.load(mission_id, known)
+        started = await self.records.of_kinds(mission_id, ("mission_started",))
+        await learn_from_truth(self.flights.equipment, mission_id, state.search, started)
 
     async def label(self, mission_id: str, name: str, tags: list[str], notes: str, by: str) -> None:
         """In the place of what was said before."""
@@ -84,14 +87,14 @@ class Review:
 
     async def keep_variant(self, mission_id: str, name: str, wanted: Supposition, by: str) -> None:
         """Beside the mission, in the place of one of the same name. Raises MissionConflict when there are too many."""
-        kept = variants_of(await self.records.read(mission_id))
+        kept = variants_of(await self.records.of_kinds(mission_id, VARIANTS))
         if name not in kept and len(kept) >= MOST_VARIANTS:
             raise MissionConflict(refusals.TooManyVariants(MOST_VARIANTS))
         await self._record(mission_id, VariantKept(name=name, wanted=wanted, by=by))
 
     async def drop_variant(self, mission_id: str, name: str, by: str) -> None:
         """Nothing happens to a name that is not there."""
-        if name in variants_of(await self.records.read(mission_id)):
+        if name in variants_of(await self.records.of_kinds(mission_id, VARIANTS)):
             await self._record(mission_id, VariantDropped(name=name, by=by))
 
     async def delete(self, mission_id: str, by: str) -> None:

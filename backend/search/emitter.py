@@ -13,6 +13,7 @@ from backend.events import (
     TruthNoted,
 )
 from backend.reasons import Reason
+from planner.reasons import BearingsNotInBelief
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,5 +84,7 @@ class EmitterState:
 
     @property
     def not_yet(self) -> tuple[Reason, ...]:
-        """What is missing for "localized"; nothing before the first belief."""
+        """What is missing for "localized"; nothing before the first belief or bearing."""
+        if self.bearings and (self.belief is None or self.belief.bearings == 0):
+            return (BearingsNotInBelief(len(self.bearings)),)
         return () if self.belief is None else tuple(self.belief.not_yet)

@@ -80,6 +80,10 @@ class Import:
     sweeps: tuple[KeptSweep, ...]
 
 
+OF_IMPORTS = ("recording_imported", "bearing_measured", "sweep_rejected", "heard_on_the_way", "source_mute_changed")
+"""The facts that may name a recording as their source, and what says that one was imported."""
+
+
 def imported_before(recorded: Sequence[Recorded], recording_id: str) -> list[Recorded]:
     """The import of the same recording and the facts of its sweeps or bearings; empty when there was none."""
     for record in recorded:

@@ -1,7 +1,8 @@
 """The journal in a database: facts are durable before anybody hears of them, and a database that is away stops nothing.
 
 How an entry reaches the database, or the spool while it is away, is `delivery`. Here are the order of a mission's facts
-and what is read back: missions that are written to are kept in memory, so their events can be read meanwhile.
+and what is read back: missions that are written to are kept in memory (see `written`), so their events can be read
+meanwhile.
 """
 
 from __future__ import annotations
@@ -9,9 +10,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Collection, Coroutine, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any, TypeVar
 
@@ -36,8 +36,10 @@ from backend.store.entries import (
     to_records,
     to_row,
 )
+from backend.store.handed_over import HandedOver
 from backend.store.reading import ANY, PlaceInList, StoredFacts, Wanted
 from backend.store.spool import Spool
+from backend.store.written import Written, left_in_database
 from hardware.readings import Sweep
 
 log = logging.getLogger("crossfix.store")
@@ -47,18 +49,10 @@ T = TypeVar("T")
 START_PATIENCE_S = 20.0
 
 PIECE = 500
-"""Facts that are compared at once."""
+"""Facts that are read, folded or compared at once."""
 
 NETS_MISSIONS = 100
 """So many missions back a vehicle's own nets may still wait to be put back."""
-
-
-@dataclass(slots=True)
-class Written:
-    """A mission that was written to: all its events, and what they add up to (None before the first)."""
-
-    recorded: list[Recorded]
-    digest: MissionDigest | None
 
 
 class SqlJournal:
@@ -112,7 +106,7 @@ class SqlJournal:
             known = await self._known(mission_id)
             at_utc = datetime.fromtimestamp(self._now(), UTC)
             try:
-                entry = _entry(mission_id, len(known.recorded) + 1, at_utc, events)
+                entry = _entry(mission_id, known.last_seq + 1, at_utc, events)
                 recorded = to_records(mission_id, entry.rows)
                 after = fold(known.digest, recorded)
             except ValueError as error:
@@ -122,8 +116,7 @@ class SqlJournal:
             except JournalConflict:
                 self._written.pop(mission_id, None)  # the next append reads what the other one wrote
                 raise
-            known.recorded.extend(recorded)
-            known.digest = after
+            known.take(recorded, after)
             self._written[mission_id] = known
             self._forget_ended()
         return recorded
@@ -206,13 +199,21 @@ class SqlJournal:
 
     async def _known(self, mission_id: str) -> Written:
         """The mission so far, what still waits in the spool included."""
-        if mission_id not in self._written:
-            recorded = await self._stored.read(mission_id)
-            waiting = [row for entry in self._delivery.waiting_events(mission_id) for row in entry.rows]
-            missing = [row for row in waiting if row.seq > len(recorded)]
-            recorded += await beside(len(missing), to_records, mission_id, missing)
-            return Written(recorded, await beside(len(recorded), fold, None, recorded) if recorded else None)
-        return self._written[mission_id]
+        if mission_id in self._written:
+            return self._written[mission_id]
+        waiting = [row for entry in self._delivery.waiting_events(mission_id) for row in entry.rows]
+        listed = None if waiting else await self._stored.mission(mission_id)
+        if listed is not None and left_in_database(listed):
+            return Written(listed, before=listed.last_seq)
+        known = Written(None)
+        while piece := await self._stored.read(mission_id, known.last_seq, most=PIECE):
+            known.take(piece, await beside(len(piece), fold, known.digest, piece))
+            if len(piece) < PIECE:
+                break
+        if missing := [row for row in waiting if row.seq > known.last_seq]:
+            piece = await beside(len(missing), to_records, mission_id, missing)
+            known.take(piece, await beside(len(piece), fold, known.digest, piece))
+        return known
 
     # Being away and coming back
 
@@ -273,23 +274,44 @@ class SqlJournal:
         """Events with seq > after, in order, the first `most` of them; none for an unknown mission.
 
         Raises JournalUnavailable."""
-        if mission_id in self._written:
-            return self._written[mission_id].recorded[after:][:most]
-        return await self._stored.read(mission_id, after, most=most)
+        known = self._written.get(mission_id)
+        if known is None:
+            return await self._stored.read(mission_id, after, most=most)
+        older = known.stored_only(after, most)
+        stored = await self._stored.read(mission_id, after, most=older) if older else []
+        return stored + known.here(after, most)
 
     async def read_texts(self, mission_id: str, after: int = 0, most: int | None = None) -> list[str]:
         """What `read` gives, each as the JSON that the wire tells. Raises JournalUnavailable."""
-        if mission_id in self._written:
-            recorded = self._written[mission_id].recorded[after:][:most]
-            return await asyncio.to_thread(lambda: [record.model_dump_json() for record in recorded])
-        return await self._stored.read_texts(mission_id, after, most)
+        known = self._written.get(mission_id)
+        if known is None:
+            return await self._stored.read_texts(mission_id, after, most)
+        older = known.stored_only(after, most)
+        stored = await self._stored.read_texts(mission_id, after, older) if older else []
+        recorded = known.here(after, most)
+        return stored + await asyncio.to_thread(lambda: [record.model_dump_json() for record in recorded])
 
-    async def read_kinds(self, mission_id: str, kinds: Iterable[str]) -> list[Recorded]:
+    async def read_kinds(self, mission_id: str, kinds: Collection[str]) -> list[Recorded]:
         """The events of some kinds only."""
-        wanted = set(kinds)
-        if mission_id in self._written:
-            return [record for record in self._written[mission_id].recorded if record.event.kind in wanted]
-        return await self._stored.read(mission_id, kinds=wanted)
+        known = self._written.get(mission_id)
+        if known is None:
+            return await self._stored.read(mission_id, kinds=kinds)
+        stored = await self._stored.read(mission_id, kinds=kinds) if known.before else []
+        here = [record for record in known.recorded if record.event.kind in kinds]
+        return [record for record in stored if record.seq <= known.before] + here
+
+    async def hand_over(self, mission_id: str) -> HandedOver:
+        """What `read` gives, for a process of its own. Raises JournalUnavailable."""
+        known = self._written.get(mission_id)
+        stored = HandedOver((), {})
+        if known is None or known.before:
+            stored = await self._stored.hand_over(mission_id, PIECE, None if known is None else known.before)
+        recorded = [] if known is None else known.here(0, None)
+        here = [
+            await asyncio.to_thread(_spooled, mission_id, recorded[at : at + PIECE])
+            for at in range(0, len(recorded), PIECE)
+        ]
+        return HandedOver((*stored.pieces, *here), stored.imports)
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
         """With what waits in the spool; None for an unknown mission."""
@@ -367,6 +389,10 @@ def _of_this_installation(recorded: Sequence[Recorded]) -> Sequence[Recorded]:
 
 def _rows(recorded: Sequence[Recorded]) -> list[EventRow]:
     return [to_row(record.seq, record.at_utc, record.event) for record in recorded]
+
+
+def _spooled(mission_id: str, recorded: Sequence[Recorded]) -> bytes:
+    return EventsEntry(mission_id, tuple(_rows(recorded))).encode()
 
 
 def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:

@@ -18,7 +18,17 @@ from backend.events import FORM, Recorded
 from backend.ports import JournalDamaged, JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy, MissionDamaged
 from backend.store.digest import MissionDigest, from_columns
-from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records, to_texts
+from backend.store.entries import (
+    ROW,
+    EventRow,
+    EventsEntry,
+    SweepEntry,
+    imported_before,
+    sweep_columns,
+    to_records,
+    to_texts,
+)
+from backend.store.handed_over import HandedOver
 from backend.store.paths import unpacked_path
 from backend.store.patience import CrowdedError, StarvedError, patience
 from backend.store.tables import events, missions, paths, sweeps, tracks
@@ -113,6 +123,19 @@ class StoredFacts:
             told_anew = sum(row.form != FORM for row in rows)
             return await beside(told_anew, to_texts, mission_id, rows, await self._imports(mission_id, rows))
 
+    async def hand_over(self, mission_id: str, piece: int, most: int | None) -> HandedOver:
+        """The first `most` of its facts (None: all), `piece` at a time."""
+        pieces, imports, after = list[bytes](), dict[str, str](), 0
+        with _whole(mission_id):
+            while most is None or after < most:
+                rows = await self._rows(mission_id, after, None, piece if most is None else min(piece, most - after))
+                if not rows:
+                    break
+                imports |= await self._imports(mission_id, rows)
+                pieces.append(await asyncio.to_thread(EventsEntry(mission_id, tuple(rows)).encode))
+                after = rows[-1].seq
+        return HandedOver(tuple(pieces), imports)
+
     async def _rows(
         self, mission_id: str, after: int, kinds: Collection[str] | None, most: int | None
     ) -> list[EventRow]:
@@ -204,8 +227,13 @@ def _whole(mission_id: str) -> Generator[None]:
     try:
         yield
     except ValueError as error:
-        log.error("mission %s: what is stored of it cannot be read: %s", mission_id, error)
-        raise JournalDamaged(MissionDamaged(mission_id, why(error))) from error
+        raise damaged(mission_id, error) from error
+
+
+def damaged(mission_id: str, error: ValueError) -> JournalDamaged:
+    """What its readers are told; the log says it, too."""
+    log.error("mission %s: what is stored of it cannot be read: %s", mission_id, error)
+    return JournalDamaged(MissionDamaged(mission_id, why(error)))
 
 
 def _in_time_order(rows: Iterable[Any], pieces: Iterable[Any]) -> dict[str, list[TrackPoint]]:

@@ -21,6 +21,7 @@ from planner.reasons.choice import (
 from planner.reasons.not_yet import (
     BearingMissesArea,
     BearingsDisagree,
+    BearingsNotInBelief,
     CrossingAngleTooSmall,
     ErrorMayBeFarLarger,
     EstimateContradicted,
@@ -60,6 +61,7 @@ __all__ = [
     "AreaCrossesItself",
     "BearingMissesArea",
     "BearingsDisagree",
+    "BearingsNotInBelief",
     "BeliefOutOfStep",
     "BesideEllipse",
     "BetweenPlaces",

@@ -18,6 +18,19 @@ class NoBearingYet:
 
 
 @dataclass(frozen=True, slots=True)
+class BearingsNotInBelief:
+    """bearings: that count, while the belief contains none: it is being computed, or cannot be."""
+
+    bearings: int
+    code: Literal["bearings_not_in_belief"] = "bearings_not_in_belief"
+
+    english: ClassVar[Words] = Words(
+        "The belief does not contain {bearings|bearing|bearings} yet.",
+        "Wait a moment; if that stays so, leave out the bearing that came last.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class TooFewPlaces:
     """places: distinct ones that bearings were taken from."""
 
@@ -132,6 +145,7 @@ class ErrorMayBeFarLarger:
 
 NotYetReason = (
     NoBearingYet
+    | BearingsNotInBelief
     | TooFewPlaces
     | TooFewPlacesAgree
     | CrossingAngleTooSmall

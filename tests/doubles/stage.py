@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from datetime import UTC, datetime
 from typing import TypeVar
 
@@ -82,6 +82,9 @@ class MemoryJournal:
 
     async def read(self, mission_id: str, after: int = 0, most: int | None = None) -> list[Recorded]:
         return self.stored.get(mission_id, [])[after:][:most]
+
+    async def read_kinds(self, mission_id: str, kinds: Collection[str]) -> list[Recorded]:
+        return [record for record in self.stored.get(mission_id, []) if record.event.kind in kinds]
 
     async def append_unread(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
         return await self.append(mission_id, events)

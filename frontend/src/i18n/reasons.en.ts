@@ -50,6 +50,10 @@ export const reasonsEn: ReasonTable = {
     text: "No bearing has been taken.",
     remedy: "Take the first bearing.",
   },
+  bearings_not_in_belief: {
+    text: "The belief does not contain {bearings|bearing|bearings} yet.",
+    remedy: "Wait a moment; if that stays so, leave out the bearing that came last.",
+  },
   too_few_places: {
     text: "{bearings|bearing|bearings} from {places|place|places}; {needed_places} places are needed.",
     remedy: "Take a bearing from another place.",

@@ -7,6 +7,7 @@ import { ReportMap } from "../panels/ReportMap";
 import * as api from "../sources/api";
 import { polygonsOf } from "../state/areas";
 import { claimedAfterS } from "../state/claimedAfter";
+import { notYet } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
 import { eventWords } from "../state/eventWords";
 import { isTold } from "../state/flown";
@@ -84,7 +85,9 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
       )}
       <h3>{t("report.uncertain")}</h3>
       <ul data-testid="report-uncertain">
-        {fact && !fact.localized && fact.not_yet.map((reason, i) => <li key={i}>{reasonText(reason)}</li>)}
+        {notYet(view).map((reason, i) => (
+          <li key={i}>{reasonText(reason)}</li>
+        ))}
         {fact && fact.contradicting.length > 0 && (
           <li>{t("estimate.against", { against: fact.contradicting.length, bearings: fact.bearings })}</li>
         )}

@@ -5,6 +5,7 @@ import { type MessageKey, reasonText, t } from "../i18n";
 import { polygonsOf } from "../state/areas";
 import { shownBelief } from "../state/belief";
 import { chargeAfter, flightBudget, lasts } from "../state/budget";
+import { notYet } from "../state/emitter";
 import { distanceM, extent, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
 import { reviewTimeMs } from "../state/moment";
@@ -161,6 +162,7 @@ export function EstimatePanel() {
   const fact = belief?.fact;
   const estimate = fact?.estimate;
   const localized = fact?.localized ?? false;
+  const missing = notYet(mission.value);
   return (
     <section class="panel estimate" data-testid="estimate" data-tour="3" aria-label={t("estimate.title")}>
       <h2>
@@ -211,9 +213,9 @@ export function EstimatePanel() {
           <BatteryThen />
         </dl>
       )}
-      {fact && !localized && fact.not_yet.length > 0 && (
+      {missing.length > 0 && (
         <ul class="reasons" data-testid="not-yet">
-          {fact.not_yet.map((reason, i) => (
+          {missing.map((reason, i) => (
             <li key={i}>{reasonText(reason)}</li>
           ))}
         </ul>

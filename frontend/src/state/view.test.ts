@@ -1,6 +1,7 @@
 import { expect, it } from "vitest";
-import type { BeliefUpdated, MissionEvent, SweepRejected } from "../wire";
-import { CRAFT, EMITTER, excluded, record, someBearing, someReason, someSpec } from "../wire/examples";
+import type { BeliefUpdated, MissionEvent, Reason, SweepRejected } from "../wire";
+import { CRAFT, EMITTER, excluded, record, someBearing, someBelief, someReason, someSpec } from "../wire/examples";
+import { notYet } from "./emitter";
 import { missionAt } from "./mission";
 import { suppose, viewOf } from "./view";
 
@@ -55,4 +56,19 @@ it("shows the most important emitter unless another one is chosen, and follows t
   expect(seen(drafted, ordered).spec?.emitters.map((e) => e.priority)).toEqual([null, 1]);
   expect(viewOf(missionAt(record(drafted, ordered), Infinity), null, "a").emitterId).toBe("a");
   expect(seen(drafted, ordered, { ...ordered, priorities: {} }).emitterId).toBe("a");
+});
+
+it("says of bearings that no belief contains that they are not in it, and not that there are none", () => {
+  const none: Reason = { code: "no_bearing_yet" };
+  const prior = someBelief({ bearings: 0, localized: false, not_yet: [none] });
+  expect(notYet(seen())).toEqual([]);
+  expect(notYet(seen(prior))).toEqual([none]);
+  const [one, two] = [someBearing({ bearing_id: "a" }), someBearing({ bearing_id: "b" })];
+  expect(notYet(seen(one))).toEqual([{ code: "bearings_not_in_belief", bearings: 1 }]);
+  expect(notYet(seen(prior, one, two))).toEqual([{ code: "bearings_not_in_belief", bearings: 2 }]);
+  expect(notYet(seen(prior, one, two, excluded("b")))).toEqual([{ code: "bearings_not_in_belief", bearings: 1 }]);
+  expect(notYet(seen(prior, one, excluded("a")))).toEqual([none]);
+  const first = someBelief({ bearings: 1, localized: false, not_yet: [someReason] });
+  expect(notYet(seen(prior, one, first, two))).toEqual([someReason]);
+  expect(notYet(seen(one, { ...first, localized: true }))).toEqual([]);
 });

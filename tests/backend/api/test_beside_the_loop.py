@@ -13,6 +13,7 @@ from backend.api import review, summary
 from backend.events import HoldOrdered, MissionDrafted
 from backend.ports import TrackPoint
 from backend.spec import MissionSpec, Polygon
+from backend.store import entries
 from hardware.readings import Place, Sweep
 
 SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
@@ -65,3 +66,16 @@ async def test_a_path_and_a_sweep_are_told_whole(client, large) -> None:
     assert len(told["points"]) == POINTS
     sweep = (await client.get(f"{large}/sweeps/s1")).json()
     assert len(sweep["power_db"]) == POINTS
+
+
+async def test_the_process_that_makes_a_file_reads_the_facts_and_the_server_none(
+    client, services, large, monkeypatch
+) -> None:
+    here = (await client.get(f"{large}/export/json")).content
+    services.journal._written.pop("m", None)
+    read = list[object]()
+    monkeypatch.setattr("backend.api.heavy.LONG_FACTS", 1)
+    monkeypatch.setattr(entries, "_record", lambda *asked: read.append(asked))
+    assert (await client.get(f"{large}/export/json")).content == here
+    assert read == []
+    await services.desk.close()

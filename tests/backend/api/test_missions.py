@@ -5,6 +5,7 @@ from __future__ import annotations
 from uuid import uuid4
 
 import pytest
+from facts import bearing
 
 from backend.events import CommandRefused
 from backend.wire.problem import Problem
@@ -156,6 +157,13 @@ async def test_a_mission_says_what_is_known_of_each_emitter(client):
     assert [reason["code"] for e in mission["found"] for reason in e["not_yet"]] == ["no_bearing_yet"] * 2
     twice = await client.post("/api/missions", json=spec(emitters=[tag, tag]))
     is_problem(twice, 422)
+
+
+async def test_bearings_of_which_no_belief_can_be_made_are_not_said_to_be_none(client, services):
+    mission = await draft(client)
+    await services.journal.append(mission["mission_id"], [bearing(1)])
+    (found,) = (await client.get(f"/api/missions/{mission['mission_id']}")).json()["found"]
+    assert (found["bearings"], found["not_yet"]) == (1, [{"code": "bearings_not_in_belief", "bearings": 1}])
 
 
 async def test_a_fault_of_our_own_is_a_problem_with_an_incident(client, vehicle, monkeypatch, caplog):

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from shapely.geometry import shape
+from sqlalchemy import text
 
 from backend.events import (
     AreaChanged,
@@ -29,6 +30,8 @@ from backend.reasons.search import Localized
 from backend.reasons.work import FileTooHeavy
 from backend.search.localization import localization
 from backend.spec import EmitterSpec, MissionSpec, Polygon, SearchArea
+from backend.store.engine import make_engine
+from backend.store.handed_over import made_of
 from backend.wire.belief_frame import encode_belief
 from backend.workers import Workers, WorkStopped
 from hardware.frame import LocalFrame
@@ -173,6 +176,21 @@ async def test_a_long_mission_is_worked_on_in_a_process_of_its_own_and_comes_out
     await services.desk.close()
 
 
+@pytest.mark.parametrize("long_facts", [1, 10_000], ids=["in a process of its own", "here"])
+async def test_a_file_of_a_mission_with_a_damaged_fact_says_so(
+    client, services, settings, flown, monkeypatch, long_facts
+):
+    monkeypatch.setattr("backend.api.heavy.LONG_FACTS", long_facts)
+    engine = make_engine(settings.async_database_url, 60.0)
+    async with engine.execution_options(write=True).begin() as connection:
+        await connection.execute(text("UPDATE events SET body = '{}' WHERE mission_id = 'flown' AND seq = 3"))
+    await engine.dispose()
+    services.journal._written.pop("flown", None)
+    reply = await client.get(f"{flown}/export/geojson")
+    assert (reply.status_code, reply.json()["reason"]["code"]) == (500, "mission_damaged")
+    await services.desk.close()
+
+
 def without_times(answer):
     """plan_ms is measured."""
     return {**answer, "plan": answer["plan"] and {**answer["plan"], "plan_ms": 0}}
@@ -180,7 +198,7 @@ def without_times(answer):
 
 def counting(run, ran):
     async def counted(self, work, *args, **kwargs):
-        ran.append(work.__name__)
+        ran.append((args[1] if work is made_of else work).__name__)
         return await run(self, work, *args, **kwargs)
 
     return counted

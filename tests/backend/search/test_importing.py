@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import get_args
 from uuid import uuid4
 
 import numpy as np
@@ -25,7 +26,7 @@ from backend.reasons.search import (
     RecordingTooLong,
 )
 from backend.search.errors import MissionInputError
-from backend.search.importing import MOST_SWEEPS, Import, Upload, import_facts
+from backend.search.importing import MOST_SWEEPS, OF_IMPORTS, Import, Upload, import_facts
 from backend.search.state import SearchState, evolve
 from backend.spec import EmitterSpec, MissionSpec, MovementSpec
 from hardware.direction_finding.antenna import AntennaPattern
@@ -252,3 +253,9 @@ def test_a_recording_of_which_nobody_knows_when_stops_no_search_for_what_moves()
     belief = state.emitters["emitter-1"].belief
     assert belief is not None
     assert (belief.bearings, belief.localized) == (2, False)
+
+
+def test_whatever_may_name_a_recording_as_its_source_is_looked_at() -> None:
+    kinds = [kind for kind in get_args(get_args(Event)[0]) if "source" in kind.model_fields]
+    naming = [kind for kind in kinds if ImportSource in get_args(kind.model_fields["source"].annotation)]
+    assert {kind.model_fields["kind"].default for kind in naming} | {"recording_imported"} == set(OF_IMPORTS)

@@ -48,6 +48,7 @@ from backend.search.inputs import (
 from backend.search.machine import transition
 from backend.search.state import SearchState, Stage, evolve
 from backend.spec import FIRST_EMITTER
+from planner.reasons import BearingsNotInBelief, NoBearingYet
 
 STAGES: tuple[Stage, ...] = get_args(Stage)
 
@@ -164,6 +165,22 @@ def test_a_search_without_a_craft_is_made_of_bearings_from_elsewhere(source: obj
     assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
     walk.believe()
     assert walk.state.not_yet == (NOT_YET,)
+
+
+def test_bearings_that_no_belief_contains_are_not_said_to_be_none() -> None:
+    walk = SearchWalk().to("open")
+    walk.arrive(bearing(1))
+    assert walk.state.not_yet == (BearingsNotInBelief(1),)
+    walk.fold(belief(0).model_copy(update={"not_yet": [NoBearingYet()]}))
+    walk.arrive(bearing(2))
+    assert walk.state.not_yet == (BearingsNotInBelief(2),)
+    walk.order(commands.ExcludeBearing(bearing_id="b1"))
+    assert walk.state.not_yet == (BearingsNotInBelief(1),)
+    walk.order(commands.ExcludeBearing(bearing_id="b2"))
+    assert walk.state.not_yet == (NoBearingYet(),)
+    walk.fold(belief(2))
+    walk.arrive(bearing(3))
+    assert walk.state.not_yet == (NOT_YET,), "what a belief of some bearings said stands until the next"
 
 
 def test_the_facts_of_an_import_are_kept_in_order_and_its_bearings_counted() -> None:

@@ -10,26 +10,32 @@ import pytest
 from stepped_clock import SteppedClock
 
 from backend.beside import MANY
-from backend.events import HoldOrdered, MissionDrafted, Recorded
+from backend.events import HoldOrdered, MissionDrafted, MissionStarted, Recorded
 from backend.mission import records as mission_records
 from backend.mission.records import Records
 from backend.mission.state import MissionState
-from backend.spec import MissionSpec, Polygon
+from backend.spec import MissionSpec, Place, Polygon
 from backend.store import digest, entries, journal, packed
 from backend.store.brought import Brought
 from backend.store.entries import JournalConflict, to_row
 
 SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
+STARTED = MissionStarted(
+    craft_id="craft-1", by="operator", home=Place(lat=50.6, lon=7.2), home_amsl_m=100.0, software="0.1.0"
+)
 FACTS = 1_200
+
+
+def holds(count: int) -> list[HoldOrdered]:
+    notes = ["x" * 2_000 if n % 10 == 0 else str(n) for n in range(count)]
+    return [HoldOrdered(craft_id="craft-1", by=note, reason=None) for note in notes]
 
 
 @pytest.fixture
 async def many(bench) -> journal.SqlJournal:
     """A mission of FACTS facts, some of them long, read by a server that did not write it."""
     first = await bench.open()
-    notes = ["x" * 2_000 if n % 10 == 0 else str(n) for n in range(FACTS - 1)]
-    told = [HoldOrdered(craft_id="craft-1", by=note, reason=None) for note in notes]
-    await first.append("m", [MissionDrafted(spec=SPEC), *told])
+    await first.append("m", [MissionDrafted(spec=SPEC), *holds(FACTS - 1)])
     await bench.close()
     return await bench.open()
 
@@ -96,11 +102,26 @@ async def test_one_that_is_longer_than_what_is_here_is_refused(many) -> None:
         await many.bring_in(Brought("m", (*brought.rows, more), brought.digest, (), (), "crossfix"), "Ada")
 
 
-async def test_the_first_fact_after_a_start_folds_the_others_beside_the_loop(many, monkeypatch) -> None:
-    called = watch(monkeypatch, (journal, "fold"))
+async def test_the_first_fact_after_a_start_reads_none_of_the_others(many, monkeypatch) -> None:
+    called = watch(monkeypatch, (journal, "fold"), (packed, "unpacked"))
     await many.append("m", [HoldOrdered(craft_id="craft-1", by="now", reason=None)])
-    assert ("fold", False, FACTS) in called
+    assert [one for one in called if one[0] == "fold"] == [("fold", True, 1)]
+    assert len(called) == 1, "no stored text is unpacked"
+
+
+async def test_of_a_mission_under_way_the_others_are_folded_beside_the_loop_a_piece_at_a_time(
+    bench, monkeypatch
+) -> None:
+    first = await bench.open()
+    await first.append("m", [MissionDrafted(spec=SPEC), STARTED, *holds(FACTS)])
+    await bench.close()
+    again = await bench.open()
+    called = watch(monkeypatch, (journal, "fold"))
+    await again.append("m", [HoldOrdered(craft_id="craft-1", by="now", reason=None)])
     assert held_up(called) == 1
+    assert sum(facts for _, on_loop, facts in called if not on_loop) == FACTS + 2
+    assert max(facts for _, _, facts in called) <= journal.PIECE < FACTS
+    assert len(again._written["m"].recorded) == FACTS + 3, "all of it is there while the database is away"
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)

@@ -47,6 +47,10 @@ export const planner = {
     remedy: "",
   },
 
+  bearings_not_in_belief: {
+    text: "Wo der Sender sein kann, ist mit {bearings|Peilung|Peilungen} noch nicht berechnet.",
+    remedy: "Kurz warten; bleibt es dabei, die letzte Peilung weglassen.",
+  },
   no_bearing_yet: { text: "Es ist noch keine Peilung genommen.", remedy: "Die erste Peilung nehmen." },
   too_few_places: {
     text: "{bearings|Peilung|Peilungen} von {places|Ort|Orten}; {needed_places} Orte sind nötig.",
