@@ -27,7 +27,7 @@ from backend.search.turn_schedule import turn_s
 from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
-from hardware.reasons.vehicle_news import ClockRateOdd
+from hardware.reasons.vehicle_news import ClockRateOdd, SwitchUndone
 from planner.types import Problem
 
 POSITION_STALE_S = 3.0
@@ -165,11 +165,13 @@ def vehicle_vetoes(situation: Situation) -> tuple[Reason, ...]:
 
 
 def resume_vetoes(telemetry: Telemetry) -> tuple[Reason, ...]:
-    """May an operator resume? Not before a pilot has given the vehicle back: any command would take it from them."""
+    """May an operator resume? Not before a pilot has given the vehicle back: any command would take it from them. Where
+    an order of ours undid their switch, the mode that waits is ours, and selecting it gives nothing back."""
     authority = telemetry.authority
     if authority.who != "pilot" or authority.given_back:
         return ()
-    return (safety.NotGivenBack(telemetry.mode or authority.mode or ""),)
+    mode = telemetry.mode or authority.mode or ""
+    return (SwitchUndone(mode) if authority.undone else safety.NotGivenBack(mode),)
 
 
 def battery_vetoes(

@@ -153,17 +153,18 @@ def silence_answered(event: dict[str, Any]) -> bool:
     return reason.get("code") == "failsafe_flies" and reason["because"] == "silence"
 
 
-def last_belief(events: list[Event]) -> tuple[tuple[str, ...], str] | None:
-    """(ids of the bearings, digest) of the last belief, None when bearings came after it."""
-    bearings: list[str] = []
-    known = None
+def last_beliefs(events: list[Event]) -> dict[str, tuple[tuple[str, ...], str]]:
+    """By emitter: (ids of all bearings and legs, digest) of its last belief, none where any of those came after it:
+    what is heard of one emitter tells of the compass, and so counts for the others."""
+    heard = list[str]()
+    known = dict[str, tuple[tuple[str, ...], str]]()
     for recorded in events:
         event = recorded["event"]
-        if event["kind"] == "bearing_measured":
-            bearings.append(event["bearing_id"])
+        if event["kind"] in ("bearing_measured", "heard_on_the_way"):
+            heard.append(event.get("bearing_id") or event["leg_id"])
         elif event["kind"] == "belief_updated":
-            known = (tuple(bearings), event["digest"])
-    return known if known is not None and known[0] == tuple(bearings) else None
+            known[event["emitter_id"]] = (tuple(heard), event["digest"])
+    return {name: belief for name, belief in known.items() if belief[0] == tuple(heard)}
 
 
 async def phase_after_restart(client: httpx.AsyncClient, mission_id: str) -> str:
@@ -224,8 +225,8 @@ async def compare(shown: Console, before: list[Event], found: Findings) -> None:
     await all_shown(shown, len(before))
     found.lost += sum(one != two for one, two in zip(before, shown.events, strict=False))
     found.lost += sum(r["seq"] != n for n, r in enumerate(shown.events, 1))
-    known = last_belief(before)
-    if known is None or shown.phases[-1:] != ["hold"]:
+    known = last_beliefs(before)
+    if not known or shown.phases[-1:] != ["hold"]:
         return
     restarts = len(shown.of("server_restarted"))
 
@@ -233,13 +234,15 @@ async def compare(shown: Console, before: list[Event], found: Findings) -> None:
         if shown.phases[-1] == DOWN:
             return True
         kinds = [r["event"]["kind"] for r in shown.events]
-        return restarts > 0 and "belief_updated" in kinds[len(kinds) - kinds[::-1].index("server_restarted") :]
+        since = len(kinds) - kinds[::-1].index("server_restarted") if restarts else len(kinds)
+        told = {r["event"]["emitter_id"] for r in shown.events[since:] if r["event"]["kind"] == "belief_updated"}
+        return known.keys() <= told
 
     await shown.until(rebuilt_or_over, 30)
-    again = last_belief(shown.events)
-    if again is not None and again[0] == known[0]:
-        found.beliefs_compared += 1
-        found.beliefs_changed += again[1] != known[1]
+    again = last_beliefs(shown.events)
+    same = [name for name in known if name in again and again[name][0] == known[name][0]]
+    found.beliefs_compared += len(same)
+    found.beliefs_changed += sum(again[name][1] != known[name][1] for name in same)
 
 
 async def loop(

@@ -31,7 +31,7 @@ from backend.craft.watch.battery import battery_stage
 from backend.reasons import safety
 from backend.search.area import EDGE_TOLERANCE_M
 from backend.spec import FlightSpec
-from hardware.reasons.vehicle_news import ClockRateOdd
+from hardware.reasons.vehicle_news import ClockRateOdd, SwitchUndone
 from planner.reason import remedy_of
 
 
@@ -195,6 +195,11 @@ def test_resuming_is_vetoed_until_the_pilot_has_given_back_unless_it_is_the_fail
     assert resume_vetoes(telemetry()) == ()
     assert resume_vetoes(telemetry(authority=FAILSAFE, mode="RETURN")) == ()
     assert resume_vetoes(telemetry(authority=PILOT, mode="RETURN")) == (safety.NotGivenBack("RETURN"),)
+
+
+def test_a_pilot_whose_switch_our_order_undid_is_not_asked_to_select_the_mode_that_the_vehicle_is_in() -> None:
+    undone = replace(PILOT, undone=True)
+    assert resume_vetoes(telemetry(authority=undone, mode="BRAKE")) == (SwitchUndone("BRAKE"),)
 
 
 def test_a_vehicle_in_the_air_stays_only_within_limits_that_hold_its_home_too() -> None:
