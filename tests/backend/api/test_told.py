@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
-from collections.abc import Iterable
+from collections.abc import Collection
 
 import httpx
 import pytest
@@ -52,7 +52,7 @@ async def reckoned(services: Services, monkeypatch: pytest.MonkeyPatch) -> list[
     asked: list[str] = []
     read_kinds = services.journal.read_kinds
 
-    async def read(mission_id: str, kinds: Iterable[str]) -> list[Recorded]:
+    async def read(mission_id: str, kinds: Collection[str]) -> list[Recorded]:
         asked.append(mission_id)
         return await read_kinds(mission_id, kinds)
 
