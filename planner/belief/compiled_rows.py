@@ -13,6 +13,8 @@ from planner.compiling import jit
 
 SMALLEST = 1e-37
 """Of a ratio: the smallest number of 32 bits, about."""
+LEAST = 1e-300
+"""Of what is divided by: the smallest number of 64 bits, about. Whole rows may be far below a ratio's."""
 
 
 @jit
@@ -71,7 +73,7 @@ def shifted(found, row, of_first, of_second, of_third):
 def ratios(found, row):
     """Each entry of a row (n + 1,), none of them negative, over the one before."""
     for b in range(len(found)):
-        found[b] = min(max(row[b + 1] / max(row[b], SMALLEST), SMALLEST), 1.0 / SMALLEST)
+        found[b] = min(max(row[b + 1] / max(row[b], LEAST), SMALLEST), 1.0 / SMALLEST)
 
 
 @jit

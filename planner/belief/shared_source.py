@@ -25,7 +25,7 @@ import numpy as np
 
 from planner.belief import compiled_evidence
 from planner.belief.evidence import sightings
-from planner.belief.joint import JointBelief, by_source, error_nodes, places_besides, settled
+from planner.belief.joint import LEAST_DENSITY, JointBelief, by_source, error_nodes, places_besides, settled
 from planner.belief.source_errors import NEGLIGIBLE_WEIGHT, Nodes, SourceErrors
 from planner.types import Bearing, BoolArray, FloatArray
 
@@ -33,7 +33,7 @@ USED_UP = 2
 """Bearings that an emitter's place takes."""
 
 SPARE = 7.0
-"""Nats: an emitter's own nodes are wider apart than the common ones."""
+"""Nats: an emitter's own nodes are wider apart than the common ones, and beliefs that agree differ."""
 
 
 def with_shared_errors(beliefs: Sequence[JointBelief], threads: int = 1) -> tuple[JointBelief, ...]:
@@ -69,18 +69,27 @@ def _in_question(grid: Nodes, known: Sequence[SourceErrors | None]) -> BoolArray
 
     By each emitter's own belief, m of them: with p the least weight that a scale and a rate have together,
     sum_se p(s, e) prod_j Z_j(b, s, e) is at most p^(1 - m) times prod_j sum_se p(s, e) Z_j(b, s, e), which is known.
+    A value that one of the others has left out counts as much as it may at most hold: where they contradict each other
+    no value is left by all of them. It is out of the question where they agree: none has left out the likeliest one,
+    which is next to what each of them by itself has for the likeliest.
     """
-    log = np.zeros((len(known), len(grid.bias)))
+    log, left = np.zeros((len(known), len(grid.bias))), np.zeros((len(known), len(grid.bias)))
     for j, errors in enumerate(known):
         if errors is None:
             return np.ones(len(grid.bias), dtype=bool)
         own = errors.nodes
         tiny = np.finfo(float).tiny
         ratio = np.log(np.maximum(errors.bias_mass, tiny) / own.bias_weight)
-        log[j] = np.interp(grid.bias, own.bias, ratio, left=-np.inf, right=-np.inf)
+        left_out = (grid.bias < own.bias[0]) | (grid.bias > own.bias[-1])
+        most = np.log(LEAST_DENSITY * errors.bias_mass.max() / grid.bias_weight)
+        log[j] = np.where(left_out, most, np.interp(grid.bias, own.bias, ratio))
+        left[j, left_out] = -np.inf
     least = math.prod(float(weight[weight > 0.0].min()) for weight in (grid.scale_weight, grid.rate_weight))
     within = -math.log(NEGLIGIBLE_WEIGHT) - len(known) * math.log(least) + SPARE
-    told = np.log(grid.bias_weight) + np.stack(told_by_others(list(log)))
+    told, left, most = (np.stack(told_by_others(list(some))) for some in (log, left, log.max(axis=1, keepdims=True)))
+    likeliest = (told + np.log(grid.bias_weight)).argmax(axis=1, keepdims=True)
+    agreed = np.take_along_axis(told + left, likeliest, axis=1) > most - SPARE
+    told = np.log(grid.bias_weight) + np.where(agreed, told + left, told)
     return (told > told.max(axis=1, keepdims=True) - within).any(axis=0)
 
 

@@ -9,12 +9,13 @@ from planner.belief import compiled_evidence, evidence, shared_source
 from planner.belief.compiled_tables import RESCALED_EVERY
 from planner.belief.evidence import sightings
 from planner.belief.grid import digest
-from planner.belief.joint import JointBelief, joint_prior, log_prior, places_besides, update_joint
+from planner.belief.joint import JointBelief, heard_on_the_way, joint_prior, log_prior, places_besides, update_joint
 from planner.belief.shared_source import common_nodes, common_source, node_evidence, told_by_others, with_shared_errors
 from planner.detection import Silence
 from planner.observation import wrap
 from planner.on_the_way import Stretch
 from planner.types import Bearing, LinearMotion, Peak, Problem
+from tests.planner.belief.test_seen_on_the_way import heard_along
 
 SIGMA = np.deg2rad(5.0)
 SQUARE = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]])
@@ -201,6 +202,22 @@ def test_errors_that_are_out_of_question_are_not_asked_for_and_nothing_changes(m
         assert np.abs(one.density - other.density).max() < 1e-12
         assert one.errors[0].nodes.bias == pytest.approx(other.errors[0].nodes.bias)
         assert one.errors[0].bias_mass == pytest.approx(other.errors[0].bias_mass, abs=1e-9)
+
+
+def test_emitters_that_leave_no_value_of_the_bias_to_all_of_them_are_asked_for_each_others():
+    """A compass that is off by something else at every emitter; beliefs bounded by what was heard on the way."""
+    rng = np.random.default_rng(3)
+    beliefs = []
+    for target, bias_deg in zip(TARGETS, (-12.0, 0.0, 12.0), strict=True):
+        taken = heard(target, rng, 4, bias=np.deg2rad(bias_deg), sigma=np.deg2rad(2.0)) * 3
+        beliefs.append(heard_on_the_way(alone(taken), heard_along((20.0, 60.0), (20.0, 180.0), target)))
+    own = [belief.errors[0].nodes.bias for belief in beliefs]
+    assert own[0][-1] < own[2][0], "the case would show nothing"
+    shared = with_shared_errors(beliefs)
+    assert all(np.isfinite(found.density).all() for found in shared)
+    for belief, found in zip(beliefs, shared, strict=True):
+        before, after = belief.errors[0].nodes, found.errors[0].nodes
+        assert (before.bias[0], before.bias[-1]) != (after.bias[0], after.bias[-1])
 
 
 def test_one_emitter_and_what_the_compass_did_not_hear_stay_bit_for_bit():

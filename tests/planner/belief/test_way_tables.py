@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from planner.belief import compiled_evidence, compiled_way_tables, evidence
+from planner.belief.compiled_on_the_way import _spread_out
 from planner.belief.compiled_way_tables import middle_of, table_of
 from planner.belief.evidence import sightings
 from planner.belief.source_errors import FINEST_SPACING, LARGEST_BIAS, ErrorPrior, nodes
@@ -92,6 +93,19 @@ def test_even_nodes_are_as_fine_as_the_bearings_ask_for(sigma_deg: float, bearin
     even, free = (nodes(ErrorPrior(), math.radians(sigma_deg), bearings, even=one) for one in (True, False))
     assert math.degrees(even.spacing) == pytest.approx(spacing)
     assert even.spacing <= free.spacing + 1e-12
+
+
+@pytest.mark.parametrize("halvings", [1, 2])
+@pytest.mark.parametrize("least", [1.0, 1e-45, 1e-250])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 30, 31, 32, 33])
+def test_what_is_weighed_at_even_steps_is_spread_out_evenly_however_small_it_is(
+    count: int, least: float, halvings: int
+) -> None:
+    """Fifteen stretches that a place contradicts leave all of its nodes below the numbers of 32 bits."""
+    log = np.log(least) + np.sin(np.arange(((count - 1) >> halvings) + 2))
+    row = np.ones(count)
+    _spread_out(row, np.exp(log), np.empty(len(log) - 1, dtype=np.float32), halvings)
+    assert np.log(row) == pytest.approx(np.interp(np.arange(count) / 2**halvings, np.arange(len(log)), log), abs=1e-5)
 
 
 def test_the_middle_of_a_stretch_lies_along_it() -> None:
