@@ -117,9 +117,10 @@ class Vehicle(Protocol):
         """Returns once the autopilot, asked afterwards, holds exactly that. Raises VehicleError."""
         ...
 
-    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool | None:
         """The owner's, wherever it still holds what we set or were about to. False: somebody has changed something
-        since, and that stays as they have it. Raises VehicleError."""
+        since, and that stays as they have it. None: it is armed, perhaps since this began: what is not put back stays,
+        for no fence changes under a pilot. Raises VehicleError."""
         ...
 
     async def return_altitude(self) -> ReturnAltitude:

@@ -141,7 +141,7 @@ class ReconnectingVehicle:
     async def set_nets(self, nets: Nets) -> None:
         await self._present().set_nets(nets)
 
-    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool | None:
         return await self._present().put_nets_back(before, ours)
 
     async def take_off(self, altitude_relative_m: float) -> None:

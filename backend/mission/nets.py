@@ -19,6 +19,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.records import Records
 from backend.ports import FactRefused, JournalUnavailable
 from backend.reasons import Reason, carried
+from backend.reasons.safety import PilotControls
 from backend.search.task import SearchTask
 from hardware.fence import Nets
 from hardware.ports import HardwareError
@@ -91,8 +92,8 @@ class NetsKeeper:
 
         async with self.one(craft.craft_id):
             try:
-                if craft.craft_id in self.owed:
-                    await self._settle(craft)
+                if craft.craft_id in self.owed and not await self._settle(craft):
+                    return PilotControls()
                 await self._hang(mission_id, craft, task, None, record)
             except HardwareError as error:
                 return carried(error.reason)
@@ -118,12 +119,16 @@ class NetsKeeper:
             self._note(mission_id, noted)
         await craft.vehicle.set_nets(plan.after)
 
-    async def _settle(self, craft: CraftEquipment) -> None:
-        """Put back what is still as a mission left it; what somebody else has changed since stays as it is."""
+    async def _settle(self, craft: CraftEquipment) -> bool:
+        """Put back what is still as a mission left it; what somebody else has changed since stays as it is. False: it
+        was armed meanwhile, and it stays owed."""
         owed = self.owed[craft.craft_id]
         whole = await craft.vehicle.put_nets_back(owed.before, owed.ours)
+        if whole is None:
+            return False
         await self.records.append(owed.mission_id, [NetsPutBack(craft_id=craft.craft_id, whole=whole)])
         del self.owed[craft.craft_id]
+        return True
 
     async def settle(self) -> None:
         """What can be settled now. Only while no mission flies."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hardware.autopilot.fence_items import FenceUnreadable, first_difference, items_of, zones_of
 from hardware.autopilot.link import FenceTransferFailed
@@ -32,15 +32,29 @@ async def read_nets(monitor: Monitor) -> Nets:
 
 async def set_nets(monitor: Monitor, nets: Nets) -> None:
     """Zones first, then the parameters that put them in force. Raises VehicleError unless all of it is read back."""
+    await _write(monitor, nets, lambda: True)
+    await _check_held(monitor, nets)
+
+
+async def _write(monitor: Monitor, nets: Nets, may: Callable[[], bool]) -> bool:
+    """may: asked right before each change. False: it said no, and what was left is as it was."""
     present = await read_nets(monitor)
     if first_difference(nets.zones, present.zones) is not None:
+        if not may():
+            return False
         await _send_zones(monitor, nets.zones)
     before = present.values()
     for one in nets.parameters:
         if one.parameter not in before or _close(before[one.parameter], one.value):
             continue
+        if not may():
+            return False
         if not await monitor.link.set_parameter(one.parameter, one.value):
             raise VehicleError(ParameterNotSet(one.parameter, one.value))
+    return True
+
+
+async def _check_held(monitor: Monitor, nets: Nets) -> None:
     after = await read_nets(monitor)
     different = first_difference(nets.zones, after.zones)
     if different is not None:
@@ -51,7 +65,7 @@ async def set_nets(monitor: Monitor, nets: Nets) -> None:
             raise VehicleError(ParameterNotSet(one.parameter, one.value))
 
 
-async def put_nets_back(monitor: Monitor, before: Nets, ours: Sequence[Nets]) -> bool:
+async def put_nets_back(monitor: Monitor, before: Nets, ours: Sequence[Nets]) -> bool | None:
     """See Vehicle.put_nets_back. Part by part: an interrupted change has left some of ours and some of theirs."""
     present = await read_nets(monitor)
     known = (before, *ours)
@@ -63,7 +77,10 @@ async def put_nets_back(monitor: Monitor, before: Nets, ours: Sequence[Nets]) ->
         mine = any(_close(one.value, value) for value in left)
         whole = whole and mine
         values.append(ParameterValue(one.parameter, back.get(one.parameter, one.value)) if mine else one)
-    await set_nets(monitor, Nets(before.zones if same else present.zones, tuple(values)))
+    nets = Nets(before.zones if same else present.zones, tuple(values))
+    if not await _write(monitor, nets, lambda: monitor.snapshot.armed is False):
+        return None
+    await _check_held(monitor, nets)
     return whole
 
 

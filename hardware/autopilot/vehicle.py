@@ -140,9 +140,9 @@ class MavsdkVehicle:
         not known."""
         await set_nets(self._monitor, nets)
 
-    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool | None:
         """Of what is still as we left it, or were about to. False: somebody has changed something since, and that stays
-        as they have it. Raises VehicleError."""
+        as they have it. None: it is armed, perhaps since this began, and the rest stays. Raises VehicleError."""
         return await put_nets_back(self._monitor, before, ours)
 
     def take_control(self) -> None:

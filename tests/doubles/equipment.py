@@ -172,7 +172,9 @@ class FlatVehicle:
         self.nets = nets
         self.nets_set.append(nets)
 
-    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool | None:
+        if self.state.armed:
+            return None
         whole = self.nets in (before, *ours)
         if whole:
             await self.set_nets(before)

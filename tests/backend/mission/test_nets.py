@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
+from dataclasses import replace
 from uuid import uuid4
 
 import pytest
@@ -58,6 +60,30 @@ async def test_after_the_landing_the_owners_nets_are_back(stage: Stage) -> None:
     await stage.until(mission_id, "nets_put_back")
     assert stage.vehicle.nets == OWN
     assert stage.journal.of_kind(mission_id, NetsPutBack) == [NetsPutBack(craft_id=FIRST_CRAFT, whole=True)]
+
+
+async def test_nets_that_were_owed_as_somebody_armed_it_stay_owed_until_it_stands_again(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission_id = await flying(stage)
+    await stage.until_phase(mission_id, "landing")
+    up, began, at_once = stage.vehicle.nets, asyncio.Event(), stage.vehicle.put_nets_back
+
+    async def armed_meanwhile(before: Nets, ours: Sequence[Nets]) -> bool | None:
+        if not began.is_set():
+            began.set()
+            stage.vehicle.state = replace(stage.vehicle.state, armed=True)
+        return await at_once(before, ours)
+
+    monkeypatch.setattr(stage.vehicle, "put_nets_back", armed_meanwhile)
+    stage.vehicle.touch_down()
+    await began.wait()
+    await asyncio.sleep(0.2)
+    assert stage.vehicle.nets == up
+    assert stage.journal.of_kind(mission_id, NetsPutBack) == []
+    stage.vehicle.touch_down()
+    await stage.until(mission_id, "nets_put_back")
+    assert stage.vehicle.nets == OWN
 
 
 async def test_nets_that_are_not_taken_refuse_the_start_and_leave_nothing_behind(stage: Stage) -> None:

@@ -83,6 +83,22 @@ async def test_a_fence_of_the_owner_that_is_tighter_refuses_and_a_wider_one_is_p
         await rig.vehicle.set_nets(plan.before)
 
 
+async def test_no_net_is_put_back_under_a_pilot_who_has_armed_it_meanwhile(rig: Rig) -> None:
+    plan = await planned(rig)
+    try:
+        await rig.vehicle.set_nets(plan.after)
+        held = await rig.vehicle.nets()
+        await rig.airborne()
+        assert await rig.vehicle.put_nets_back(plan.before, [plan.after]) is None
+        assert await rig.vehicle.nets() == held
+        await rig.vehicle.land()
+        await rig.until(lambda: rig.vehicle.telemetry().armed is False, 120, "landing")
+        assert await rig.vehicle.put_nets_back(plan.before, [plan.after]) is True
+        assert await rig.vehicle.nets() == plan.before
+    finally:
+        await rig.vehicle.set_nets(plan.before)
+
+
 async def test_the_parameters_as_shipped_are_no_limit_of_the_owner_but_are_put_in_force(rig: Rig) -> None:
     if rig.name != "sim-ardupilot":
         pytest.skip("ArduCopter ships with a fence that is not enabled")
