@@ -17,7 +17,7 @@ const asked = (spec: MissionSpec) =>
   sections.flatMap((s) => s.fields.filter(({ when }) => when?.(spec) ?? true).map(({ path }) => path.replace("sensor.", "")));
 
 it("what does not apply is not asked for", () => {
-  const spec = someSpec();
+  const spec = set(set(someSpec(), "sensor.listen_on_the_way", false), "sensor.sector_turns", false);
   const independent = set(spec, "sensor.bearing_errors", "independent");
   for (const path of ["listen_on_the_way", "swing_on_the_way", "sweep_evidence", "shared_errors"])
     expect(asked(independent)).not.toContain(path);
