@@ -102,7 +102,7 @@ def suppose_a_worse_sensor(screen: Screen) -> None:
     """What would have been believed and chosen here, and back to what was."""
     flown = screen.part("expected-rmse").get_attribute("data-value")
     screen.part("what-if").locator("summary").click()
-    screen.part("what-if-sigma").fill("20")
+    screen.part("what-if-sigma").fill("60")
     screen.part("what-if-ask").click()
     expect(screen.part("supposed")).to_be_visible()
     expect(screen.part("what-if-steps").locator("tbody tr")).to_have_count(1)
