@@ -26,7 +26,7 @@ class BearingsNotInBelief:
 
     english: ClassVar[Words] = Words(
         "The belief does not contain {bearings|bearing|bearings} yet.",
-        "Wait a moment; if that stays so, leave out the bearing that came last.",
+        "Wait; if it stays so, leave out the last bearing.",
     )
 
 

@@ -10,8 +10,7 @@ export const slideNext = signal<string | null>(null);
 
 /** The server's, named in the page's language. */
 export async function suggestedSpec(): Promise<MissionSpec> {
-  const spec = (await api.defaults()).spec as MissionSpec;
-  return { ...spec, name: t("edit.name.suggested") || spec.name }; // the words may still be on their way
+  return { ...((await api.defaults()).spec as MissionSpec), name: t("menu.new") };
 }
 
 /** Where it is shown. */

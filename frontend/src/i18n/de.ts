@@ -448,7 +448,6 @@ export const de: Record<MessageKey, string> = {
   "map.zoomIn": "Vergrößern",
   "map.zoomOut": "Verkleinern",
   "map.grid": "Raster {length}",
-  "map.next": "Nächster Ort",
 
   "emitters.count": "{found} von {all} Sendern gefunden",
   "emitters.mhz": "{mhz} MHz",
@@ -557,7 +556,6 @@ export const de: Record<MessageKey, string> = {
   "whatIf.noPlan": "Kein nächster Ort: {reason}",
 
   "area.change": "Suchgebiet ändern",
-  "area.title": "Suchgebiet ändern",
   "area.what":
     "Die Mission hält solange. Peilungen zählen weiter; was Sie zeichnen, kommt zum Gebiet dazu. Vor dem Schieben ändert sich nichts.",
   "area.notHeld": "Das Gebiet ändert sich nur, während die Mission hält: zuerst Halten drücken.",
@@ -628,7 +626,6 @@ export const de: Record<MessageKey, string> = {
   "health.udpRefused": "{sender}: {count} abgelehnt, zuletzt um {time}.",
   "health.unknown": "Der Server antwortet nicht; von nichts hier ist bekannt, dass es jetzt so ist.",
   "missions.title": "Missionen",
-  "missions.new": "Neue Mission",
   "missions.welcome": "Was möchten Sie finden?",
   "missions.welcome.example": "Das Beispiel fliegen",
   "missions.welcome.plan": "Eine Suche planen",
@@ -679,7 +676,6 @@ export const de: Record<MessageKey, string> = {
   "outcome.aborted": "abgebrochen",
   "outcome.failed": "gescheitert",
 
-  "edit.titleNew": "Neue Mission",
   "edit.title": "Mission ändern",
   "edit.save": "Speichern und prüfen",
   "edit.saving": "Speichert …",
@@ -699,7 +695,6 @@ export const de: Record<MessageKey, string> = {
   "edit.preset.beacon": "Notfunkbake",
   "edit.preset.interference": "Störer",
   "edit.name": "Name der Mission",
-  "edit.name.suggested": "Neue Suche",
   "edit.label": "Sender",
   "edit.frequency": "Frequenz",
   "edit.list":
@@ -892,9 +887,7 @@ export const de: Record<MessageKey, string> = {
   "keys.sheet": "Dieses Blatt",
   "keys.alerts": "Alarme",
   "keys.missions": "Missionen",
-  "keys.live": "Zurück zu live",
   "keys.step": "Ereignis davor, danach (auf der Zeitleiste)",
-  "keys.mute": "Töne aus",
   "keys.space": "Leertaste",
 
   "maps.title": "Offline-Karten",
@@ -1007,7 +1000,6 @@ export const de: Record<MessageKey, string> = {
   "event.plan_chosen.operator": "Ort {number} gewählt von {by}",
   "event.plan_vetoed": "Ort abgelehnt von {by}",
   "event.place_refused": "Ort {number} wurde abgelehnt: {reason}",
-  "event.flight_started": "Fliegt zu Ort {number}",
   "event.place_reached": "Ort {number} erreicht in {time}",
   "event.place_passed": "Ort {number}: {reason}",
   "event.sweep_started": "Drehung an Ort {number}",

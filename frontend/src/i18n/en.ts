@@ -313,7 +313,6 @@ export const en = {
   "map.zoomIn": "Zoom in",
   "map.zoomOut": "Zoom out",
   "map.grid": "grid {length}",
-  "map.next": "Next place",
 
   "emitters.count": "{found} of {all} emitters found",
   "emitters.mhz": "{mhz} MHz",
@@ -476,9 +475,7 @@ export const en = {
   "keys.sheet": "This sheet",
   "keys.alerts": "Alerts",
   "keys.missions": "Missions",
-  "keys.live": "Back to live",
   "keys.step": "Event before, after (review)",
-  "keys.mute": "Mute tones",
   "keys.space": "Space",
 
   "problem.remedy": "What to do: {remedy}",
@@ -565,7 +562,6 @@ export const en = {
   "event.plan_chosen.operator": "Place {number} chosen by {by}",
   "event.plan_vetoed": "Place vetoed by {by}",
   "event.place_refused": "Place {number} was refused: {reason}",
-  "event.flight_started": "Flying to place {number}",
   "event.place_reached": "Place {number} reached in {time}",
   "event.place_passed": "Place {number}: {reason}",
   "event.sweep_started": "Sweep at place {number}",

@@ -167,7 +167,6 @@ export const pagesEn = {
   "whatIf.noPlan": "No next place: {reason}",
 
   "area.change": "Change the search area",
-  "area.title": "Change the search area",
   "area.what": "The mission holds meanwhile. Bearings count on; what you draw is added to the area. Nothing changes before you slide.",
   "area.notHeld": "The area changes in hold only: press Hold first.",
   "area.over": "The mission is over: its area can no longer be changed.",
@@ -221,7 +220,6 @@ export const pagesEn = {
   "cards.truth": "Found",
   "cards.events": "Events",
   "missions.title": "Missions",
-  "missions.new": "New mission",
   "missions.welcome": "What would you like to find?",
   "missions.welcome.example": "Fly the example",
   "missions.welcome.plan": "Plan a search",
@@ -250,7 +248,6 @@ export const pagesEn = {
   "missions.bringingIn": "Importing: {percent} %",
   "missions.recordingBroken": "{name} is not a recording: {reason}",
 
-  "edit.titleNew": "New mission",
   "edit.title": "Edit mission",
   "edit.save": "Save and check",
   "edit.saving": "Saving …",
@@ -270,7 +267,6 @@ export const pagesEn = {
   "edit.preset.beacon": "rescue beacon",
   "edit.preset.interference": "interference",
   "edit.name": "Name of the mission",
-  "edit.name.suggested": "New search",
   "edit.label": "Emitter",
   "edit.frequency": "Frequency",
   "edit.list":

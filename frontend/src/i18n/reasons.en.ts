@@ -52,7 +52,7 @@ export const reasonsEn: ReasonTable = {
   },
   bearings_not_in_belief: {
     text: "The belief does not contain {bearings|bearing|bearings} yet.",
-    remedy: "Wait a moment; if that stays so, leave out the bearing that came last.",
+    remedy: "Wait; if it stays so, leave out the last bearing.",
   },
   too_few_places: {
     text: "{bearings|bearing|bearings} from {places|place|places}; {needed_places} places are needed.",

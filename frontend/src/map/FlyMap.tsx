@@ -161,7 +161,7 @@ function bind(map: GlMap): () => void {
       const proposed = proposal.value;
       const at = proposed?.place ?? plan.value?.fact.place;
       nextMarker.getElement().classList.toggle("proposed", proposed !== null);
-      nextMarker.getElement().title = t("map.next");
+      nextMarker.getElement().title = t("plan.title");
       if (!at) {
         nextMarker.remove();
         nextShown = false;

@@ -55,7 +55,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
       <EditMapArea onTold={setTold} />
       <div class="side">
         <div class="panel edit-head">
-          <h1>{t("area.title")}</h1>
+          <h1>{t("area.change")}</h1>
         </div>
         <div class="edit-scroll">
           <p class="panel">{t("area.what")}</p>

@@ -212,7 +212,7 @@ export function EditPage({ route }: { route: EditRoute }) {
     setProblem(null);
     const local = !now.hasArea ? t("edit.noArea") : Object.keys(now.text).length > 0 ? t("edit.invalid") : null;
     if (local) {
-      setProblem(localProblem(t("edit.titleNew"), local));
+      setProblem(localProblem(t("menu.new"), local));
       return;
     }
     setSaving(true);
@@ -240,7 +240,7 @@ export function EditPage({ route }: { route: EditRoute }) {
         }}
       >
         <div class="panel edit-head">
-          <h1>{t(route.page === "edit" ? "edit.title" : "edit.titleNew")}</h1>
+          <h1>{t(route.page === "edit" ? "edit.title" : "menu.new")}</h1>
           {restored && (
             <span class="muted">
               {t("edit.restored")}{" "}

@@ -295,7 +295,7 @@ export function MissionsPage() {
         <div class="page-head">
           <h1>{t("missions.title")}</h1>
           <a class="button primary" href="#/new" data-testid="new-mission">
-            {t("missions.new")}
+            {t("menu.new")}
           </a>
         </div>
         {!isEmpty && (

@@ -1,14 +1,5 @@
 // What is known of one emitter: a fold of the mission's events.
-import type {
-  BearingMeasured,
-  BearingSource,
-  BeliefUpdated,
-  HeardOnTheWay,
-  MissionEvent,
-  Reason,
-  SweepRejected,
-  TruthNoted,
-} from "../wire";
+import type { BearingMeasured, BearingSource, BeliefUpdated, HeardOnTheWay, MissionEvent, SweepRejected, TruthNoted } from "../wire";
 
 export interface At<T> {
   fact: T;
@@ -82,13 +73,6 @@ export const emptyEmitter = (emitterId: string, muted: MutedSources = new Set())
   claim: null,
   truth: null,
 });
-
-/** Why "localized" is not said: not what a belief said before it contained any of the bearings. */
-export function notYet({ belief, bearings }: Pick<EmitterState, "belief" | "bearings">): readonly Reason[] {
-  const counted = bearings.filter((b) => !b.excluded).length;
-  if (counted > 0 && !belief?.fact.bearings) return [{ code: "bearings_not_in_belief", bearings: counted }];
-  return belief && !belief.fact.localized ? belief.fact.not_yet : [];
-}
 
 const counting = <T extends { leftOut: boolean; fact: { source: BearingSource } }>(
   told: T,

@@ -104,7 +104,7 @@ function wordsOf(event: Exclude<MissionEvent, EventOf<"priorities_changed">>, un
     case "place_refused":
       return t("event.place_refused", { number: event.place_number, reason: reasonText(event.reason) });
     case "flight_started":
-      return t("event.flight_started", { number: event.place_number });
+      return t("state.flying", { number: event.place_number });
     case "place_reached":
       return t("event.place_reached", { number: event.place_number, time: formatDuration(event.flight_time_s) });
     case "place_passed":

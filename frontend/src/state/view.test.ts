@@ -1,8 +1,8 @@
 import { expect, it } from "vitest";
 import type { BeliefUpdated, MissionEvent, Reason, SweepRejected } from "../wire";
 import { CRAFT, EMITTER, excluded, record, someBearing, someBelief, someReason, someSpec } from "../wire/examples";
-import { notYet } from "./emitter";
 import { missionAt } from "./mission";
+import { notYet } from "./notYet";
 import { suppose, viewOf } from "./view";
 
 const seen = (...events: MissionEvent[]) => viewOf(missionAt(record(...events), Infinity));
