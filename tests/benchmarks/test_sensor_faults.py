@@ -15,11 +15,11 @@ FINDER = SparseDirectionFinder(heading_sigma_deg=HEADING_SIGMA_DEG)
 @pytest.mark.long
 @pytest.mark.parametrize("fault", [f for f in FAULTS if f.seen], ids=lambda fault: fault.name)
 def test_claims_are_true_under_every_fault_that_can_be_noticed(fault: Fault) -> None:
-    outcomes = [fly(seed, fault, PATTERN, FINDER) for seed in range(101, 113)]
+    outcomes = [fly(seed, fault, PATTERN, FINDER) for seed in range(101, 149)]
     claims = [o for o in outcomes if o.localized]
-    assert len(claims) >= 11
-    assert sum(o.in_c95 for o in claims) >= len(claims) - 1
-    assert sum(not o.in_c95 and o.error_m > 3.0 * o.stated_m for o in claims) <= 1
+    assert len(claims) >= 46
+    assert sum(o.in_c95 for o in claims) >= len(claims) - 4
+    assert sum(not o.in_c95 and o.error_m > 3.0 * o.stated_m for o in claims) <= 4
     assert fault.name in row(fault, outcomes)
 
 
