@@ -166,7 +166,8 @@ def vehicle_vetoes(situation: Situation) -> tuple[Reason, ...]:
 
 def resume_vetoes(telemetry: Telemetry) -> tuple[Reason, ...]:
     """May an operator resume? Not before a pilot has given the vehicle back: any command would take it from them. Where
-    an order of ours undid their switch, the mode that waits is ours, and selecting it gives nothing back."""
+    one of our orders undid the pilot's switch, the vehicle is in a mode that we chose: selecting that mode again
+    reports no change, so the pilot is asked to select their own."""
     authority = telemetry.authority
     if authority.who != "pilot" or authority.given_back:
         return ()

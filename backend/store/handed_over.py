@@ -1,5 +1,7 @@
-"""All facts of a mission for a process of its own, as a few long texts: so many objects would hold the event loop up
-while they are written for the other process, and whenever the garbage collector looks at them."""
+"""All facts of a mission, passed to another process as a few long texts instead of tens of thousands of objects.
+
+Objects would block the event loop twice: while they are pickled, and whenever the garbage collector scans them.
+"""
 
 from __future__ import annotations
 

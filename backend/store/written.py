@@ -15,8 +15,8 @@ seconds, and the garbage collector holds the event loop up for as long as they a
 
 @dataclass(slots=True)
 class Written:
-    """digest: what all its facts add up to, None before the first. before: so many of them lie in the database only.
-    recorded: the others."""
+    """digest: the summary of all its facts, None before the first. before: how many facts are in the database only.
+    recorded: the facts after those."""
 
     digest: MissionDigest | None
     recorded: list[Recorded] = field(default_factory=list[Recorded])

@@ -57,8 +57,8 @@ def constrained_actions(problem: Problem, belief: GridBelief, usable: Usable | N
 
 
 def standoff_from(belief: GridBelief, problem: Problem) -> float:
-    """r_min, m, to keep from this belief's C95 (6.1): none of a flat prior, whose C95 is the area itself, in which the
-    emitter was heard nowhere yet."""
+    """r_min, m, to keep from this belief's C95 (6.1). 0 for a flat prior without a bearing: its C95 is the whole
+    searched area, and keeping away from it would mean turning outside first."""
     return 0.0 if belief.flat_prior and belief.bearings == 0 else problem.standoff
 
 
