@@ -19,7 +19,7 @@ from backend.auth.records import Records
 from backend.bearing_feed import BearingFeed, DatagramRefused, open_feed
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
-from backend.events import FIRST_CRAFT
+from backend.events import FIRST_CRAFT, Recorded
 from backend.first_hold import FirstHold
 from backend.live.hub import Hub
 from backend.maps.terrain_folder import TerrainFolder
@@ -62,8 +62,11 @@ log = logging.getLogger("crossfix.bearings")
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
     """Time of the last fact of an unfinished mission: a sped-up clock must not run behind it."""
-    journals = [await journal.read(mission_id) for mission_id in await journal.unfinished()]
-    return max((recorded[-1].at_utc.timestamp() for recorded in journals if recorded), default=None)
+    last = list[Recorded]()
+    for mission_id in await journal.unfinished():
+        digest = await journal.mission(mission_id)
+        last += [] if digest is None else await journal.read(mission_id, after=digest.last_seq - 1)
+    return max((recorded.at_utc.timestamp() for recorded in last), default=None)
 
 
 def _warm_up() -> None:

@@ -54,8 +54,10 @@ def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: 
 
 
 def confidence_region(belief: GridBelief, share: float = 0.95) -> Ring:
-    """Convex hull (n, 2), m ENU, of the smallest set of cells that holds `share` of the mass (6.2.1)."""
-    return cells_hull(smallest_set(belief, share), belief.x0, belief.y0, belief.h)
+    """Convex hull (n, 2), m ENU, of the smallest set of cells that holds `share` of the mass (6.2.1), and of those that
+    are as dense as its last: an even belief has no cell that it could leave out."""
+    least = belief.density[smallest_set(belief, share)].min()
+    return cells_hull(belief.density >= least, belief.x0, belief.y0, belief.h)
 
 
 def mass_within(belief: GridBelief, x: float, y: float, radius: float) -> float:

@@ -114,6 +114,12 @@ def test_entropy_and_rmse_of_a_uniform_square():
     assert np.diag(look.covariance) == pytest.approx([300**2 / 12] * 2, rel=1e-3)
 
 
+def test_the_region_of_an_even_belief_leaves_out_no_side_of_its_area():
+    region = confidence_region(prior_belief(PROBLEM))
+    assert region.min(axis=0).tolist() == [0.0, 0.0]
+    assert region.max(axis=0).tolist() == [300.0, 300.0]
+
+
 def test_confidence_regions_are_nested_and_mass_within_grows():
     belief = fold(PROBLEM, crossing(np.pi / 2, 0.1))
     small, large = confidence_region(belief, 0.5), confidence_region(belief, 0.95)
