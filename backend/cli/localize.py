@@ -247,7 +247,7 @@ def _localize(
         "sources": [_source(one) for one in belief.errors] if isinstance(belief, JointBelief) else [],
     }
     if belief is not None:
-        spread = stated(belief, estimate(belief, problem.estimator))
+        spread = stated(belief, estimate(belief, problem.estimator), problem.threshold)
         place = frame.to_geo(spread.x, spread.y)
         outline = [frame.to_geo(x, y) for x, y in confidence_region(belief)]
         ring = [[round(p.lon, 8), round(p.lat, 8)] for p in (*outline, outline[0])]

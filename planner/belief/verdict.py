@@ -31,8 +31,10 @@ from planner.types import Bearing, Estimate, FloatArray, LocalizationRule, Probl
 FAR_ERRORS = 3.0
 """Times what is stated."""
 MOST_BEYOND = 0.02
-"""Probability that the error is larger than that, of a joint belief. Twice what outliers at their usual rate leave of a
-belief of a few bearings, so that it only stops what is not yet settled."""
+"""Probability that the error is larger than three times the goal, of a joint belief. Twice what outliers at their usual
+rate leave of a belief of a few bearings, so that it only stops what is not yet settled."""
+STATED_BEYOND = 0.005
+"""Probability that the error is larger than three times what is stated."""
 
 TELLING_SIGMA = np.deg2rad(25.0)
 """An emitter that moves: an older bearing, by now less sure than this, is no place that the claim rests on."""
@@ -46,12 +48,12 @@ def verdict(
     With a joint belief the bearings are judged as it reads them, freed of the bias of their source.
     Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing. Of
     legs, where the rule has them, only those that speak for it; those that speak against it contradict as bearings do.
-    The estimate's expected error is the stated one.
+    The estimate's expected error is the stated one, which may reach the goal where the one that is judged is below it.
     """
     if belief is None:
         return Verdict(False, False, (disagreement(len(bearings)),))
     mean = estimate(belief, problem.estimator)
-    spread = stated(belief, mean)
+    spread = stated(belief, mean, rule.threshold)
     area = where_it_may_be(belief) if isinstance(belief, MovingBelief) else problem.area
     bearings = _as_read(belief, bearings, spread)
     consistent = wedges_meet(area, bearings)
@@ -70,7 +72,7 @@ def verdict(
         reasons.append(EstimateContradicted(against_it, len(said)))
     elif not wedges_meet(area, _towards(supporting, spread)):
         reasons.append(disagreement(len(supporting)))
-    if not spread.expected_rmse < rule.threshold:
+    if not _judged(belief, mean) < rule.threshold:
         reasons.append(_error_reason(belief, mean, spread, rule))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against, tuple((w.leg, w.said) for w in ways))
 
@@ -79,13 +81,13 @@ def missing_crossing(
     problem: Problem, rule: LocalizationRule, bearings: Sequence[Bearing], belief: GridBelief
 ) -> Crossing | None:
     """What the next bearing must cross; None where the error is still too large, or the lines cross widely enough."""
-    spread = stated(belief, estimate(belief, problem.estimator))
-    supporting = _supporting(belief, _as_read(belief, bearings, spread), spread)
-    supporting += [_line(one, spread) for one in _ways(rule, belief, spread) if one.sees]
-    if not spread.expected_rmse < rule.threshold or not _angle_reasons(rule, supporting, spread.x, spread.y):
+    mean = estimate(belief, problem.estimator)
+    supporting = _supporting(belief, _as_read(belief, bearings, mean), mean)
+    supporting += [_line(one, mean) for one in _ways(rule, belief, mean) if one.sees]
+    if not _judged(belief, mean) < rule.threshold or not _angle_reasons(rule, supporting, mean.x, mean.y):
         return None
-    directions = [float(expected_bearing(b.x, b.y, spread.x, spread.y)) for b in supporting]
-    return Crossing(spread.x, spread.y, np.array(directions), rule.min_crossing_angle)
+    directions = [float(expected_bearing(b.x, b.y, mean.x, mean.y)) for b in supporting]
+    return Crossing(mean.x, mean.y, np.array(directions), rule.min_crossing_angle)
 
 
 def _as_read(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) -> Sequence[Bearing]:
@@ -119,16 +121,28 @@ def _tells(belief: GridBelief, bearing: Bearing) -> bool:
     return not isinstance(belief, MovingBelief) or bearing.sigma <= TELLING_SIGMA
 
 
-def stated(belief: GridBelief, mean: Estimate) -> Estimate:
-    """The estimate with the error that may be stated: of a joint belief at least a third of the radius that leaves
-    MOST_BEYOND outside.
+def stated(belief: GridBelief, mean: Estimate, goal: float) -> Estimate:
+    """The estimate with the error that may be stated; goal: m, what a claim asks for.
 
-    Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean distance says too little.
+    Three times as far is where an emitter is looked for. A joint belief leaves STATED_BEYOND outside of that as far as
+    the goal allows, r_q being the radius that holds q: max(E|x - mean|, r_0.98 / 3, min(goal, r_0.995 / 3)).
     """
-    if not isinstance(belief, JointBelief | MovingBelief) or _beyond(belief, mean, mean.expected_rmse) <= MOST_BEYOND:
-        return mean
-    radius = radius_of(belief, mean.x, mean.y, 1.0 - MOST_BEYOND)
-    return replace(mean, expected_rmse=max(mean.expected_rmse, radius / FAR_ERRORS))
+    tail = min(goal, _error_with_tail(belief, mean, STATED_BEYOND))
+    return replace(mean, expected_rmse=max(_judged(belief, mean), tail))
+
+
+def _judged(belief: GridBelief, mean: Estimate) -> float:
+    """m, the error that a claim is judged by. Of a posterior with a heavy tail (few bearings, each perhaps wrong) the
+    mean distance says too little."""
+    return _error_with_tail(belief, mean, MOST_BEYOND)
+
+
+def _error_with_tail(belief: GridBelief, mean: Estimate, beyond: float) -> float:
+    """m, the mean distance; of a joint belief at least a third of the radius that leaves `beyond` outside."""
+    error = mean.expected_rmse
+    if not isinstance(belief, JointBelief | MovingBelief) or _beyond(belief, mean, error) <= beyond:
+        return error
+    return max(error, radius_of(belief, mean.x, mean.y, 1.0 - beyond) / FAR_ERRORS)
 
 
 def _beyond(belief: GridBelief, at: Estimate, error: float) -> float:

@@ -43,8 +43,8 @@ FEWEST_TOLD = 1e-3
 @dataclass(frozen=True, slots=True)
 class Claim:
     """What came of one mission. time_s: until its end. error_m, stated_m, rms_m, in_c95, far_chance: at the claim.
-    stated_m is the mean distance by the belief, rms_m its root mean square, far_chance the belief's own probability
-    that the error is beyond three times what it states.
+    stated_m is what the claim states, rms_m the belief's root mean square distance, far_chance its own probability that
+    the error is beyond three times what is stated.
 
     bias_off_deg, bias_sd_deg: what the belief was wrong by about the bias of the bearings, and what it stated of that
     (NaN: it knows none). found_s: of one of several emitters, until it was claimed, else until the mission's end; None
@@ -204,7 +204,7 @@ def claim_at(
     time_s: float,
 ) -> Claim:
     """What the belief says, held against the truth. target: (2,) m. bias: rad, of the first source's bearings."""
-    spread = stated(belief, estimate(belief, problem.estimator))
+    spread = stated(belief, estimate(belief, problem.estimator), problem.threshold)
     known = belief.errors if isinstance(belief, JointBelief | MovingBelief) else ()
     return Claim(
         seed=seed,

@@ -131,16 +131,24 @@ CROSSING = (toward(160, 110), toward(100, 170))
 
 
 def test_a_far_tail_is_stated_and_stops_no_claim_while_it_lies_within_three_thresholds():
-    near, light = (verdict(PROBLEM, RULE, CROSSING, tailed(24.0, share)) for share in (0.03, 0.01))
+    near, light, none = (verdict(PROBLEM, RULE, CROSSING, tailed(24.0, share)) for share in (0.03, 0.01, 0.003))
     assert near.localized
     assert near.estimate is not None
     assert light.estimate is not None
+    assert none.estimate is not None
     assert near.estimate.expected_rmse == pytest.approx(8.0, abs=1.0)
-    assert light.estimate.expected_rmse < 1.5
+    assert light.estimate.expected_rmse == pytest.approx(8.0, abs=1.0)
+    assert none.estimate.expected_rmse < 1.5
     (reason,) = verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.03)).reasons
     assert isinstance(reason, ErrorMayBeFarLarger)
     assert (reason.beyond_percent, reason.far_m) == (pytest.approx(3.0), 30.0)
-    assert verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.01)).localized
+
+
+def test_a_claim_with_a_tail_beyond_three_thresholds_states_the_threshold():
+    answer = verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.01))
+    assert answer.localized
+    assert answer.estimate is not None
+    assert answer.estimate.expected_rmse == RULE.threshold
 
 
 def test_an_error_that_is_too_large_is_named_as_it_is_stated():
