@@ -54,10 +54,13 @@ def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: 
 
 
 def confidence_region(belief: GridBelief, share: float = 0.95) -> Ring:
-    """Convex hull (n, 2), m ENU, of the smallest set of cells that holds `share` of the mass (6.2.1), and of those that
-    are as dense as its last: an even belief has no cell that it could leave out."""
-    least = belief.density[smallest_set(belief, share)].min()
-    return cells_hull(belief.density >= least, belief.x0, belief.y0, belief.h)
+    """Convex hull (n, 2), m ENU, of the smallest set of cells that holds `share` of the mass (6.2.1); of an even
+    belief, which has no cell that it could leave out, of all."""
+    cells = smallest_set(belief, share)
+    densest = belief.density.max()
+    if belief.density[cells].min() == densest:
+        cells = belief.density == densest
+    return cells_hull(cells, belief.x0, belief.y0, belief.h)
 
 
 def mass_within(belief: GridBelief, x: float, y: float, radius: float) -> float:
