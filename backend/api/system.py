@@ -11,6 +11,7 @@ from backend.api.dependencies import ServicesDep
 from backend.api.meters import free_bytes
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.suggestion import suggested_mission
+from backend.craft.checklist import home_of
 from backend.craft.equipment import CraftEquipment
 from backend.events import FIRST_CRAFT
 from backend.live.snapshot import telemetry_message
@@ -94,8 +95,7 @@ async def list_payloads(services: ServicesDep) -> PayloadList:
 async def defaults(services: ServicesDep) -> Defaults:
     """A specification to start from, its area around the vehicle's home."""
     telemetry, settings = services.missions.equipment.first.vehicle.telemetry(), services.settings
-    known = telemetry.home or telemetry.position
-    home = known if known else None
+    home, _ = home_of(telemetry)
     fallback = Place(lat=settings.home_lat_deg, lon=settings.home_lon_deg)
     return Defaults(spec=suggested_mission(home or fallback), home=home)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +16,7 @@ from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
 from backend.craft.return_altitude import least_return_altitude_m, return_altitude_check
 from backend.craft.safety import Limits, Situation, battery_to_return_percent, limits_of, start_vetoes
+from backend.craft.way_home import ABOVE_HOME_M
 from backend.events import CheckFact
 from backend.ports import Grounds
 from backend.reasons import Reason, carried, checks
@@ -25,6 +27,7 @@ from backend.search.task import SearchTask, search_task
 from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
+from hardware.frame import LocalFrame
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
 from planner.types import FloatArray
 
@@ -34,7 +37,16 @@ FEWEST_TURNS = 2
 
 
 def home_of(telemetry: Telemetry) -> tuple[Place | None, float | None]:
-    """The vehicle's home and its height AMSL; where it stands when the autopilot has not said."""
+    """The vehicle's home and its height AMSL; where it stands when the autopilot has not said.
+
+    Both autopilots make the place where they are armed their home, and until then tell of the last one: a vehicle that
+    was carried, or landed elsewhere, takes off from a home of which nobody has heard yet.
+    """
+    place, before = telemetry.position, telemetry.home
+    if place is not None and before is not None and telemetry.armed is False and telemetry.in_air is False:
+        away_m = math.hypot(*LocalFrame(before).to_enu(place))
+        if away_m > ABOVE_HOME_M and telemetry.altitude_amsl_m is not None:
+            return place, telemetry.altitude_amsl_m
     amsl = telemetry.home_amsl_m
     if amsl is None and telemetry.altitude_amsl_m is not None:
         amsl = telemetry.altitude_amsl_m - (telemetry.altitude_relative_m or 0.0)

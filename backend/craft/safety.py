@@ -227,7 +227,7 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     found += _altitude_vetoes(limits, limits.altitude_relative_m)
     if telemetry.position is not None:
         at = limits.frame.to_enu(telemetry.position)
-        found += _area_vetoes(limits, at, "vehicle_stands")
+        found += _area_vetoes(limits, at, "vehicle_stands") or _enclosed_vetoes(limits, at)
         found += ground_vetoes(limits, [at], level_altitude([at], limits.ground, limits.flight), "take_off")
     return tuple(found)
 
@@ -380,6 +380,11 @@ def _area_vetoes(limits: Limits, at: tuple[float, float], what: What) -> list[Re
     if any(zone.contains(point) for zone in limits.no_fly):
         found.append(safety.InsideNoFly(what))
     return found
+
+
+def _enclosed_vetoes(limits: Limits, at: tuple[float, float]) -> list[Reason]:
+    """No-fly zones that enclose the vehicle, a ring of walls or a zone with a hole, let it take off and go nowhere."""
+    return [] if way_home(limits.problem, at) is not None else [safety.InsideNoFly("vehicle_stands")]
 
 
 def _path_vetoes(limits: Limits, path: LineString) -> list[Reason]:

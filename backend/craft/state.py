@@ -62,9 +62,10 @@ class CraftState:
     """engaged: it was started for this mission and is not down since. searching: nor was it aborted.
 
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. reached: the craft
-    is there, and whether it turns there is not decided. avoid: places vetoed
-    or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
-    from the specification. refused: places that the autopilot would not fly to, since the search area changed;
+    is there, and whether it turns there is not decided. attempt: turns begun at the place. in_vain: those of them that
+    ended without a bearing; one that a hold or a pilot broke off is none of them. maximum_retakes: of one sweep, from
+    the specification. avoid: places vetoed or without a usable sweep since the last bearing, or since the search area
+    changed. refused: places that the autopilot would not fly to, since the search area changed;
     refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its way home. ladder: of the
     hold, return or landing that was ordered last; None once something else has come of it. counting_down: it returns
     soon because its battery runs low; countdown_stopped: somebody has stopped that, which they may once a flight.
@@ -84,6 +85,7 @@ class CraftState:
     accepted: bool = False
     reached: bool = False
     attempt: int = 0
+    in_vain: frozenset[int] = frozenset()
     place_number: int = 0
     avoid: tuple[Place, ...] = ()
     refused: tuple[Place, ...] = ()
@@ -198,7 +200,13 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
     match event:
         case PlanChosen(place_number=number, source=source):
             return replace(
-                state, chosen=event, place_number=number, accepted=source == "operator", reached=False, attempt=0
+                state,
+                chosen=event,
+                place_number=number,
+                accepted=source == "operator",
+                reached=False,
+                attempt=0,
+                in_vain=frozenset(),
             )
         case PlanVetoed(place=place):
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, place))
@@ -217,8 +225,9 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
         case SweepRejected(attempt=attempt, place=place) if _ours(state, event):
             if state.chosen is None:  # the same turn heard another emitter: this one is not to be sought here again
                 return replace(state, avoid=(*state.avoid, place))
-            if attempt <= state.maximum_retakes:
-                return state
+            in_vain = state.in_vain | {attempt}  # one turn is rejected for each emitter that it did not hear
+            if len(in_vain) <= state.maximum_retakes:
+                return replace(state, in_vain=in_vain)
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
             return replace(state, chosen=None, accepted=False, avoid=())

@@ -11,7 +11,7 @@ from craft_limits import FENCE, FRAME, HOME, LIMITS, ZONE, kinds, situation, tel
 from facts import FAILSAFE, GIVEN_BACK, PILOT
 from hypothesis import given
 from hypothesis import strategies as st
-from shapely import box
+from shapely import Polygon, box
 
 from backend.craft.checklist import lasts_for
 from backend.craft.endurance import LEG_S, landing_s, unknown
@@ -170,6 +170,19 @@ def test_a_start_needs_the_ground_and_a_place_inside_the_fence() -> None:
     assert (outside.what, outside.beyond_m) == ("vehicle_stands", pytest.approx(30.0, abs=0.1))
     drifted = situation(in_air=False, east=-50.0 - 0.5 * EDGE_TOLERANCE_M)
     assert start_vetoes(LIMITS, drifted) == ()
+
+
+WALLS = (box(-30, 20, 30, 30), box(-30, -30, 30, -20), box(20, -30, 30, 30), box(-30, -30, -20, 30))
+
+
+@pytest.mark.parametrize("zones", [(box(-30, -30, 30, 30).difference(box(-20, -20, 20, 20)),), WALLS])
+def test_nothing_takes_off_where_no_fly_zones_let_it_go_nowhere(zones: tuple[Polygon, ...]) -> None:
+    enclosed = replace(LIMITS, no_fly=zones, problem=airspace(FENCE, *zones))
+    assert start_vetoes(enclosed, situation(in_air=False)) == (safety.InsideNoFly("vehicle_stands"),)
+    gap = box(-100, -10, 0, 10)
+    opened = tuple(zone.difference(gap) for zone in zones)
+    left_open = replace(LIMITS, no_fly=opened, problem=airspace(FENCE, *opened))  # pyright: ignore[reportArgumentType]
+    assert start_vetoes(left_open, situation(in_air=False)) == ()
 
 
 @given(altitude=st.floats(2, 500), low=st.floats(0, 500), high=st.floats(2, 1000))

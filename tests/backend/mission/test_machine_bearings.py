@@ -98,6 +98,32 @@ def test_after_a_silent_place_the_next_is_planned_with_what_the_silence_tells() 
     assert fold(walk.recorded) == walk.state
 
 
+def test_turns_that_were_broken_off_are_not_counted_as_turns_in_vain() -> None:
+    walk = Walk().to("measuring")
+    for _ in range(SPEC.sensor.maximum_retakes + 1):
+        walk.command(commands.Hold())
+        walk.command(commands.Resume())
+        walk.arrive()
+    begun = walk.craft.attempt
+    assert begun == SPEC.sensor.maximum_retakes + 2
+    for retake in range(SPEC.sensor.maximum_retakes):
+        walk.to_craft(inputs.SweepTaken((silent(begun + retake),)))
+        assert walk.craft.phase == "measuring", f"{retake} of {SPEC.sensor.maximum_retakes} turns were taken again"
+    walk.to_craft(inputs.SweepTaken((silent(begun + SPEC.sensor.maximum_retakes),)))
+    assert walk.craft.phase == "planning"
+    assert fold(walk.recorded) == walk.state
+
+
+def test_a_turn_that_heard_no_emitter_of_two_is_one_turn_in_vain() -> None:
+    walk = Walk(TWO_SPEC).to("flying").arrive()
+    for attempt in range(1, SPEC.sensor.maximum_retakes + 1):
+        walk.to_craft(inputs.SweepTaken((silent(attempt), silent(attempt, emitter_id=SECOND))))
+        assert walk.craft.phase == "measuring"
+    last = SPEC.sensor.maximum_retakes + 1
+    walk.to_craft(inputs.SweepTaken((silent(last), silent(last, emitter_id=SECOND))))
+    assert walk.craft.phase == "planning"
+
+
 def test_a_muted_person_sends_a_craft_on_its_way_home_back_to_no_search_and_the_end_says_so() -> None:
     walk = Walk().to("flying")
     walk.give(BearingsArrived((bearing(1, source=PERSON, bearing_id="p"),)))
