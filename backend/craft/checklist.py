@@ -42,15 +42,23 @@ def home_of(telemetry: Telemetry) -> tuple[Place | None, float | None]:
     Both autopilots make the place where they are armed their home, and until then tell of the last one: a vehicle that
     was carried, or landed elsewhere, takes off from a home of which nobody has heard yet.
     """
-    place, before = telemetry.position, telemetry.home
-    if place is not None and before is not None and telemetry.armed is False and telemetry.in_air is False:
-        away_m = math.hypot(*LocalFrame(before).to_enu(place))
-        if away_m > ABOVE_HOME_M and telemetry.altitude_amsl_m is not None:
-            return place, telemetry.altitude_amsl_m
+    if _home_away_m(telemetry) is not None:
+        return telemetry.position, telemetry.altitude_amsl_m
     amsl = telemetry.home_amsl_m
     if amsl is None and telemetry.altitude_amsl_m is not None:
         amsl = telemetry.altitude_amsl_m - (telemetry.altitude_relative_m or 0.0)
     return telemetry.home or telemetry.position, amsl
+
+
+def _home_away_m(telemetry: Telemetry) -> float | None:
+    """How far a vehicle that waits to be armed stands from the home that it tells of; None where it is at home."""
+    place, home = telemetry.position, telemetry.home
+    if place is None or home is None or telemetry.altitude_amsl_m is None:
+        return None
+    if telemetry.armed is not False or telemetry.in_air is not False:
+        return None
+    away_m = math.hypot(*LocalFrame(home).to_enu(place))
+    return away_m if away_m > ABOVE_HOME_M else None
 
 
 def task_at(mission: MissionSpec, telemetry: Telemetry, terrain: Terrain | None) -> tuple[SearchTask | None, CheckFact]:
@@ -85,6 +93,8 @@ async def checklist(
 
     await recent(situation)
     found = [check_fact(check) for check in await equipment.vehicle.preflight()]
+    away_m = _home_away_m(equipment.vehicle.telemetry())
+    found += [] if away_m is None else [_fact("home", False, checks.HomeMovesHere(away_m), blocking=False)]
     home, _ = home_of(equipment.vehicle.telemetry())
     terrain = None if grounds is None or home is None else await grounds.around(home)
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry(), terrain)

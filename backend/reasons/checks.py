@@ -187,8 +187,22 @@ class ReturnAltitudeUnread:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class HomeMovesHere:
+    """away_m: from where the vehicle stands to the home that its autopilot tells of."""
+
+    away_m: float
+    code: Literal["home_moves_here"] = "home_moves_here"
+    english: ClassVar[Words] = Words(
+        "The autopilot's home is {away_m} away. It moves here when the vehicle is armed, unless somebody has fixed it; "
+        "then its own return leads there.",
+        "If a ground station has set the home, set it to where the vehicle stands.",
+    )
+
+
 CheckReason = (
-    ReturnAltitudeChecked
+    HomeMovesHere
+    | ReturnAltitudeChecked
     | ReturnAltitudeUnread
     | ReturnClimbs
     | ReturnMeetsGround

@@ -1017,6 +1017,10 @@ export const reasonsEn: ReasonTable = {
     text: "This server has no accounts: whoever sits before it controls every search.",
     remedy: "",
   },
+  home_moves_here: {
+    text: "The autopilot's home is {away_m} away. It moves here when the vehicle is armed, unless somebody has fixed it; then its own return leads there.",
+    remedy: "If a ground station has set the home, set it to where the vehicle stands.",
+  },
   return_altitude_checked: {
     text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}).",
     remedy:

@@ -166,6 +166,20 @@ def test_home_is_where_the_vehicle_will_be_armed_and_not_where_it_was_armed_befo
         assert home_of(flies) == (before, 100.0)
 
 
+async def test_a_home_that_is_elsewhere_is_a_caution() -> None:
+    stage = Stage()
+    home = stage.vehicle.state.home
+    assert home is not None
+    away = LocalFrame(home).to_geo(0.0, 20.0)
+    stage.vehicle.state = replace(stage.vehicle.state, position=away, armed=False, in_air=False)
+    facts, task = await checklist(spec(), stage.craft(), None)
+    (caution,) = [fact for fact in facts if fact.name == "home" and not fact.ok]
+    assert not caution.blocking
+    assert caution.reason == checks.HomeMovesHere(pytest.approx(20.0, abs=0.1))
+    assert task is not None
+    assert task.home == away
+
+
 class Known:
     """Grounds of one terrain."""
 

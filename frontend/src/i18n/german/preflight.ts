@@ -122,6 +122,10 @@ export const preflight = {
     text: "Die eigene Rückkehr des Autopiloten steigt um {climb_m}, wo immer sie beginnt ({parameter}): Von {from_relative_m} aus führt das über die Höchsthöhe der Mission von {ceiling_relative_m}.",
     remedy: "{parameter} auf 0 setzen oder die Höchsthöhe der Mission anheben.",
   },
+  home_moves_here: {
+    text: "Der Startplatz des Autopiloten liegt {away_m} entfernt. Er rückt beim Scharfschalten hierher, wenn ihn niemand festgelegt hat; sonst führt die eigene Rückkehr dorthin.",
+    remedy: "Hat eine Bodenstation den Startplatz gesetzt, ihn dorthin setzen, wo das Fahrzeug steht.",
+  },
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },
   receiver_delivers: { text: "Der Empfänger liefert Messwerte auf {channels|Kanal|Kanälen}.", remedy: "" },
