@@ -65,11 +65,18 @@ def standoff_from(belief: GridBelief, problem: Problem) -> float:
 def without_refused(
     places: FloatArray, refused: Sequence[tuple[float, float]], problem: Problem, belief: GridBelief
 ) -> FloatArray:
-    """(n, 2) m: those that lie half a spacing, and at least SAME_PLACE_M, from every refused one (m ENU)."""
+    """(n, 2) m: those that lie half a spacing, and at least SAME_PLACE_M, from every refused one (m ENU).
+
+    While no standoff is asked for, a turn in vain may have been made above the emitter: r_min from every refused one
+    where any place is so far.
+    """
     near = max(0.5 * (problem.action_spacing or belief.h), SAME_PLACE_M)
+    away = np.full(len(places), np.inf)
     for place in refused:
-        places = places[np.hypot(*(places - np.array(place)).T) >= near]
-    return places
+        away = np.minimum(away, np.hypot(*(places - np.array(place)).T))
+    if standoff_from(belief, problem) < problem.standoff and (away >= max(problem.standoff, near)).any():
+        near = max(problem.standoff, near)
+    return places[away >= near]
 
 
 def lattice(problem: Problem) -> FloatArray:

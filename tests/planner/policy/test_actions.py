@@ -9,7 +9,7 @@ from refusals import refusing
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import fold, prior_belief
 from planner.geometry import contains, distance_to_convex
-from planner.policy.actions import action_space, belief_grid, constrained_actions, lattice
+from planner.policy.actions import action_space, belief_grid, constrained_actions, lattice, without_refused
 from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
 from planner.types import Bearing, GaussianPrior, LinearMotion, Problem
 
@@ -76,6 +76,17 @@ def test_before_the_first_bearing_an_area_alone_keeps_no_place_away():
     region = confidence_region(prior_belief(thought_of))
     places = constrained_actions(thought_of, prior_belief(thought_of))
     assert distance_to_convex(places, region).min() >= 50.0, "of a place that somebody thinks of it does"
+
+
+def test_after_a_turn_in_vain_the_first_bearing_is_taken_a_standoff_away():
+    """It may have been made above the emitter."""
+    prior, vain = prior_belief(FIELD), (150.0, 60.0)
+    places = without_refused(action_space(FIELD, prior), [vain], FIELD, prior)
+    assert np.hypot(*(places - vain).T).min() >= FIELD.standoff == 50.0
+    belief = fold(FIELD, TWO)
+    assert np.hypot(*(without_refused(action_space(FIELD, belief), [vain], FIELD, belief) - vain).T).min() < 50.0
+    here = np.array([[150.0, 80.0], [150.0, 62.0]])
+    assert without_refused(here, [vain], FIELD, prior).tolist() == here[:1].tolist(), "where no place is so far"
 
 
 def test_the_standoff_shrinks_until_two_places_are_left():
