@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -33,8 +34,8 @@ FAR_ERRORS = 3.0
 MOST_BEYOND = 0.02
 """Probability that the error is larger than three times the goal, of a joint belief. Twice what outliers at their usual
 rate leave of a belief of a few bearings, so that it only stops what is not yet settled."""
-STATED_BEYOND = 0.005
-"""Probability that the error is larger than three times what is stated."""
+LINE = math.sqrt(math.pi / 2.0)
+"""The standard deviation of a normal distribution along a line, over its mean distance."""
 
 TELLING_SIGMA = np.deg2rad(25.0)
 """An emitter that moves: an older bearing, by now less sure than this, is no place that the claim rests on."""
@@ -124,25 +125,26 @@ def _tells(belief: GridBelief, bearing: Bearing) -> bool:
 def stated(belief: GridBelief, mean: Estimate, goal: float) -> Estimate:
     """The estimate with the error that may be stated; goal: m, what a claim asks for.
 
-    Three times as far is where an emitter is looked for. A joint belief leaves STATED_BEYOND outside of that as far as
-    the goal allows, r_q being the radius that holds q: max(E|x - mean|, r_0.98 / 3, min(goal, r_0.995 / 3)).
+    Three times as far is where an emitter is looked for, and of a line 1.6 % lies beyond three mean distances. So a
+    joint belief states the standard deviation of the line with its mean distance, beyond three of which lies 0.3 % of
+    any normal distribution, as far as the goal allows: max(E|x - e|, r_0.98 / 3, min(goal, sqrt(pi / 2) E|x - e|)).
     """
-    tail = min(goal, _error_with_tail(belief, mean, STATED_BEYOND))
-    return replace(mean, expected_rmse=max(_judged(belief, mean), tail))
+    error = _judged(belief, mean)
+    if isinstance(belief, JointBelief | MovingBelief):
+        error = max(error, min(goal, LINE * mean.expected_rmse))
+    return replace(mean, expected_rmse=error)
 
 
 def _judged(belief: GridBelief, mean: Estimate) -> float:
-    """m, the error that a claim is judged by. Of a posterior with a heavy tail (few bearings, each perhaps wrong) the
-    mean distance says too little."""
-    return _error_with_tail(belief, mean, MOST_BEYOND)
+    """m, the error that a claim is judged by: the mean distance, of a joint belief at least a third of the radius that
+    leaves MOST_BEYOND outside.
 
-
-def _error_with_tail(belief: GridBelief, mean: Estimate, beyond: float) -> float:
-    """m, the mean distance; of a joint belief at least a third of the radius that leaves `beyond` outside."""
+    Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean distance says too little.
+    """
     error = mean.expected_rmse
-    if not isinstance(belief, JointBelief | MovingBelief) or _beyond(belief, mean, error) <= beyond:
+    if not isinstance(belief, JointBelief | MovingBelief) or _beyond(belief, mean, error) <= MOST_BEYOND:
         return error
-    return max(error, radius_of(belief, mean.x, mean.y, 1.0 - beyond) / FAR_ERRORS)
+    return max(error, radius_of(belief, mean.x, mean.y, 1.0 - MOST_BEYOND) / FAR_ERRORS)
 
 
 def _beyond(belief: GridBelief, at: Estimate, error: float) -> float:

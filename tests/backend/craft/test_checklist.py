@@ -175,7 +175,8 @@ async def test_a_home_that_is_elsewhere_is_a_caution() -> None:
     facts, task = await checklist(spec(), stage.craft(), None)
     (caution,) = [fact for fact in facts if fact.name == "home" and not fact.ok]
     assert not caution.blocking
-    assert caution.reason == checks.HomeMovesHere(pytest.approx(20.0, abs=0.1))
+    assert isinstance(caution.reason, checks.HomeMovesHere)
+    assert caution.reason.away_m == pytest.approx(20.0, abs=0.1)
     assert task is not None
     assert task.home == away
 
