@@ -126,8 +126,10 @@ def stated(belief: GridBelief, mean: Estimate, goal: float) -> Estimate:
     """The estimate with the error that may be stated; goal: m, what a claim asks for.
 
     Three times as far is where an emitter is looked for, and of a line 1.6 % lies beyond three mean distances. So a
-    joint belief states the standard deviation of the line with its mean distance, beyond three of which lies 0.3 % of
-    any normal distribution, as far as the goal allows: max(E|x - e|, r_0.98 / 3, min(goal, sqrt(pi / 2) E|x - e|)).
+    joint belief states the standard deviation of the line with its mean distance, beyond three of which lies at most
+    0.3 % of a normal distribution, as far as the goal allows:
+
+        max(E|x - e|, r_0.98 / 3, min(goal, sqrt(pi / 2) E|x - e|))
     """
     error = _judged(belief, mean)
     if isinstance(belief, JointBelief | MovingBelief):
