@@ -244,7 +244,7 @@ class CraftStatus:
     when it is in the air all the same. order None: nothing was ordered, or something else has come of it.
     resume_refused: why resuming would be refused now; None: it would not, or nothing waits to be resumed. alerts: of a
     craft that flies for no mission; those of one that does are its mission's facts. settling_samples: left out, since
-    the receiver was changing to other channels."""
+    the receiver was changing to other channels. receiver_lost_percent: as in hardware.ports.Receiver."""
 
     craft_id: str
     mission_id: str | None
@@ -257,6 +257,7 @@ class CraftStatus:
     resume_refused: Reason | None = None
     alerts: tuple[CraftAlert, ...] = ()
     settling_samples: int = 0
+    receiver_lost_percent: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

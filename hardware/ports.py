@@ -64,6 +64,10 @@ class ReceiverError(HardwareError):
         return self._hardware_reason
 
 
+LOST_PERCENT = 1.0
+"""Of a receiver's samples: who loses more is told of."""
+
+
 class Clock(Protocol):
     """Time as the mission sees it; a simulated clock may run faster than the wall."""
 
@@ -167,6 +171,11 @@ class Vehicle(Protocol):
 
 class Receiver(Protocol):
     """Received narrow-band power of one or several emitters at once."""
+
+    @property
+    def lost_percent(self) -> float:
+        """How much of what its device took in the last seconds never arrived; 0 for one that loses nothing."""
+        ...
 
     async def open(self, channels: Sequence[Channel]) -> None:
         """Listen to these channels, all at once, until closed or opened with others.

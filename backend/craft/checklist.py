@@ -28,7 +28,9 @@ from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
 from hardware.frame import LocalFrame
+from hardware.ports import LOST_PERCENT
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
+from hardware.reasons.receiver import SamplesLost
 from planner.types import FloatArray
 
 RECEIVER_WALL_S = 3.0
@@ -126,7 +128,9 @@ async def _receiver(mission: MissionSpec, equipment: CraftEquipment, listening: 
         works = checks.TurnTakesLong(turn_s(mission))
     if listening is not None:
         trouble = listening.trouble
-        return _fact("receiver", trouble is None, works if trouble is None else trouble)
+        if trouble is None:
+            return _losing(listening) or _fact("receiver", True, works)
+        return _fact("receiver", False, trouble)
     for group in groups:
         wrong = await _wrong_with(mission, equipment, channels_for(group))
         if wrong is not None:
@@ -135,13 +139,13 @@ async def _receiver(mission: MissionSpec, equipment: CraftEquipment, listening: 
 
 
 async def _wrong_with(mission: MissionSpec, equipment: CraftEquipment, channels: Sequence[Channel]) -> CheckFact | None:
-    """None: every channel of these was heard."""
+    """None: every channel of these was heard, and nothing got lost."""
     trial = Listening(equipment.receiver, equipment.clock, channels, mission.timers.receiver_silent_s)
     trial.start()
     try:
         unheard = [channel for channel in channels if not await _heard(trial, channel)]
         if not unheard:
-            return None
+            return _losing(trial)
         silent = next((channel for channel in unheard if trial.last(channel.frequency_hz) is None), None)
         if silent is None:
             return _fact("receiver", False, checks.TagUnheard(unheard[0].frequency_hz), blocking=False)
@@ -150,6 +154,11 @@ async def _wrong_with(mission: MissionSpec, equipment: CraftEquipment, channels:
         return _fact("receiver", False, checks.NoSamples() if trouble is None else trouble, blocking)
     finally:
         await trial.stop()
+
+
+def _losing(listening: Listening) -> CheckFact | None:
+    lost_percent = listening.lost_percent
+    return _fact("receiver", False, SamplesLost(lost_percent), blocking=False) if lost_percent > LOST_PERCENT else None
 
 
 async def _heard(trial: Listening, channel: Channel) -> bool:

@@ -21,6 +21,7 @@ from backend.reasons import Reason
 from backend.reasons.flight import OtherAntenna, StepName, WatchBroke, Way
 from backend.spec import LearnedErrors, Place
 from hardware.authority import Authority
+from hardware.reasons.receiver import SamplesLost
 from hardware.reasons.vehicle_news import AutopilotWords, ClockRateOdd
 
 
@@ -155,6 +156,18 @@ class ClockOdd:
 @dataclass(frozen=True, slots=True)
 class ClockAgrees:
     """The two clocks run at one rate again."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReceiverLoses:
+    """A good part of its samples, and goes on."""
+
+    because: SamplesLost
+
+
+@dataclass(frozen=True, slots=True)
+class ReceiverKeepsUp:
+    """It loses none any more that would matter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +310,8 @@ CraftInput = (
     | SaidNoMore
     | ClockOdd
     | ClockAgrees
+    | ReceiverLoses
+    | ReceiverKeepsUp
     | WorkVetoed
     | AuthorityHeard
     | FailsafeEnded

@@ -160,6 +160,11 @@ class Listening:
                 return None
 
     @property
+    def lost_percent(self) -> float:
+        """How much of what a receiver that is well took in the last seconds got lost."""
+        return self._receiver.lost_percent if self.state == "ok" else 0.0
+
+    @property
     def age_s(self) -> float | None:
         """Since anything was last heard."""
         return None if self._heard_at_s is None else self._clock.now() - self._heard_at_s

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from backend.craft import low_battery, orders
+from backend.craft.devices import clock_seen, losses_seen
 from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, StartTimer
 from backend.craft.hanging import nets_looked_at
 from backend.craft.inputs import (
@@ -38,6 +39,8 @@ from backend.craft.inputs import (
     NothingToPlan,
     PlaceNotTaken,
     Planned,
+    ReceiverKeepsUp,
+    ReceiverLoses,
     Restarted,
     Said,
     SaidNoMore,
@@ -134,13 +137,10 @@ def _take(step: CraftStep, given: CraftInput) -> None:
                 tell_said(step, reason)
         case SaidNoMore(text=text):
             clear_said(step, text)
-        case ClockOdd(because=because):
-            if craft.engaged:
-                alert(step, "clock", "warning", because)
-                if craft.phase == "measuring":
-                    hold(step, because)
-        case ClockAgrees():
-            clear_alerts(step, "clock")
+        case ClockOdd() | ClockAgrees():
+            clock_seen(step, given)
+        case ReceiverLoses() | ReceiverKeepsUp():
+            losses_seen(step, given)
         case WorkVetoed(vetoes=vetoes):
             if craft.phase in AUTOMATIC:
                 refuse_flight(step, vetoes)

@@ -92,6 +92,7 @@ class Display:
             receiver_power_db=None if last is None else last.power_db,
             receiver_age_s=runner.listening.age_s,
             settling_samples=runner.listening.settling_samples,
+            receiver_lost_percent=runner.listening.lost_percent,
             battery_to_return_percent=needed,
         )
 

@@ -27,6 +27,8 @@ class EmittersAroundHome:
     truth: where each simulated emitter is at first; empty until the home is known.
     """
 
+    lost_percent = 0.0
+
     def __init__(
         self,
         vehicle: Vehicle,

@@ -113,7 +113,7 @@ class CraftStatusMessage(Model):
     """mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
     resume_refused: while it holds or a pilot flies it, why resuming would be refused now. alerts: open ones of a craft
     that flies for no mission; a mission's alerts are its facts. settling_samples: left out, since the receiver was
-    changing to other channels."""
+    changing to other channels. receiver_lost_percent: of what its device took in the last seconds."""
 
     craft_id: str
     mission_id: str | None
@@ -126,6 +126,7 @@ class CraftStatusMessage(Model):
     resume_refused: Reason | None = None
     alerts: tuple[CraftAlertMessage, ...] = ()
     settling_samples: int = 0
+    receiver_lost_percent: float = 0.0
 
 
 class StatusMessage(Model):

@@ -34,11 +34,11 @@ from hardware.payload.messages import (
     parse_from_server,
 )
 from hardware.payload.spool import Spool, SpoolError
-from hardware.ports import Receiver, ReceiverError
+from hardware.ports import LOST_PERCENT, Receiver, ReceiverError
 from hardware.readings import Channel, PowerSample
 from hardware.reasons.payload import PayloadListening, PayloadStarting
 from hardware.reasons.payload_link import MessageOutOfTurn, RefusedByServer
-from hardware.reasons.receiver import NonsensicalPower, ReceiverStreamEnded
+from hardware.reasons.receiver import NonsensicalPower, ReceiverStreamEnded, SamplesLost
 from hardware.reasons.union import HardwareReason
 from planner.reason import sentence_of
 
@@ -292,10 +292,12 @@ class PayloadAgent:
         return min(self._round_trips)[1] if self._round_trips else None
 
     def _status(self) -> Status:
-        trips = self._round_trips
+        trips, state, lost_percent = self._round_trips, self._receiver_state, self._receiver.lost_percent
+        listens = isinstance(state, PayloadListening)
+        loses = listens and lost_percent > LOST_PERCENT
         return Status(
-            receiver=self._receiver_state,
-            receiver_ok=isinstance(self._receiver_state, PayloadListening),
+            receiver=SamplesLost(lost_percent) if loses else state,
+            receiver_ok=listens and not loses,
             temperature_c=_temperature_c(),
             clock_offset_s=self._clock_offset(),
             round_trip_s=min(trips)[0] if trips else None,

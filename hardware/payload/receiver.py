@@ -10,7 +10,7 @@ from hardware.payload.session import PayloadHub, Subscription
 from hardware.ports import ReceiverError
 from hardware.readings import Channel, PowerSample
 from hardware.reasons.payload import NoPayloadConnected, PayloadAway
-from hardware.reasons.receiver import ReceiverNotOpen
+from hardware.reasons.receiver import ReceiverNotOpen, SamplesLost
 
 
 class PayloadReceiver:
@@ -26,6 +26,12 @@ class PayloadReceiver:
         self._gone_after_s = gone_after_s
         self._frequencies_hz: frozenset[float] = frozenset()
         self._subscription: Subscription | None = None
+
+    @property
+    def lost_percent(self) -> float:
+        """Of the payload's radio, as it last told; of several, the one that loses most."""
+        told = (agent.receiver for agent in self._hub.agents.values() if agent.connected)
+        return max((reason.lost_percent for reason in told if isinstance(reason, SamplesLost)), default=0.0)
 
     async def open(self, channels: Sequence[Channel]) -> None:
         """Tune the payload. Raises ReceiverError when none connects in time.

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Sequence
+from dataclasses import dataclass
 
 from hardware.channels import check_channels
-from hardware.iq import IqSource
+from hardware.iq import IqBlock, IqSource
 from hardware.ports import ReceiverError
 from hardware.readings import Channel, PowerSample
 from hardware.reasons.channels import BandTooNarrow, OutsideBand
@@ -28,8 +29,12 @@ class IqReceiver:
         self._source = source
         self._silent_after_s = silent_after_s
         self._meters: list[ToneMeter | PulseMeter] = []
-        self.lost_samples = 0
-        """IQ samples the source reported as lost since open."""
+        self._before = self._now = _Samples()
+
+    @property
+    def lost_percent(self) -> float:
+        """Of the IQ samples of the last one or two periods of `silent_after_s`, or since it was opened."""
+        return (self._before + self._now).lost_percent
 
     async def open(self, channels: Sequence[Channel]) -> None:
         """See the Receiver port. The centre frequency is chosen so that every channel lies in the sampled band."""
@@ -48,7 +53,7 @@ class IqReceiver:
         except ReceiverError:
             await self._source.close()
             raise
-        self.lost_samples = 0
+        self._before = self._now = _Samples()
 
     def _meters_at(
         self,
@@ -74,6 +79,14 @@ class IqReceiver:
         except SpectrumError as error:
             raise ReceiverError(error.reason) from error
 
+    def _count(self, block: IqBlock) -> None:
+        """Raises ReceiverError after a period of which more than half was lost."""
+        self._now += _Samples(block.samples.size, block.lost)
+        if self._now.heard + self._now.lost > self._silent_after_s * self._source.sample_rate_hz:
+            self._before, self._now = self._now, _Samples()
+            if self._before.lost > self._before.heard:
+                raise ReceiverError(SamplesLost(self._before.lost_percent))
+
     async def close(self) -> None:
         """Closes the source too."""
         self._meters = []
@@ -85,7 +98,6 @@ class IqReceiver:
         if not meters:
             raise ReceiverError(ReceiverNotOpen())
         blocks = aiter(self._source.blocks())
-        heard = lost = 0
         while self._meters is meters:
             try:
                 async with asyncio.timeout(self._silent_after_s):
@@ -94,15 +106,25 @@ class IqReceiver:
                 return
             except TimeoutError:
                 raise ReceiverError(ReceiverSilent(self._silent_after_s)) from None
-            self.lost_samples += block.lost
-            heard, lost = heard + block.samples.size, lost + block.lost
-            if heard + lost > self._silent_after_s * self._source.sample_rate_hz:
-                if lost > heard:
-                    raise ReceiverError(SamplesLost(100.0 * lost / (heard + lost)))
-                heard = lost = 0
+            self._count(block)
             for meter in meters:
                 for sample in meter.feed(block):
                     yield sample
+
+
+@dataclass(frozen=True, slots=True)
+class _Samples:
+    """IQ samples of some time."""
+
+    heard: int = 0
+    lost: int = 0
+
+    def __add__(self, more: _Samples) -> _Samples:
+        return _Samples(self.heard + more.heard, self.lost + more.lost)
+
+    @property
+    def lost_percent(self) -> float:
+        return 100.0 * self.lost / max(self.heard + self.lost, 1)
 
 
 def _setting(channel: Channel) -> ToneSetting | PulseSetting:

@@ -17,6 +17,8 @@ SAME_FREQUENCY = 0.01
 class RecordedReceiver:
     """Plays a sweep's powers from the moment samples() is asked for. `headings()` gives the matching nose."""
 
+    lost_percent = 0.0
+
     def __init__(self, sweep: Sweep, clock: Clock, duration_s: float | None = None) -> None:
         if sweep.power_db.size == 0:
             raise ReceiverError(RecordedSweepEmpty())

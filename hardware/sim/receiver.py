@@ -72,6 +72,8 @@ class SimulatedReceiver:
     `silence(True)` makes the receiver go mute and `unplug()` makes it vanish, for rehearsing faults.
     """
 
+    lost_percent = 0.0
+
     def __init__(
         self,
         world: World,

@@ -37,6 +37,7 @@ from backend.events import Link
 from backend.reasons import Interrupted
 from backend.reasons.flight import OtherAntenna, StepName, Way
 from backend.search.state import SearchState
+from hardware.reasons.receiver import SamplesLost
 from hardware.reasons.vehicle import PlaceNotTaken
 from hardware.reasons.vehicle_news import (
     AutopilotRepeats,
@@ -109,6 +110,8 @@ def _every_input(number: int, attempt: int, measured: int) -> tuple[inputs.Craft
         inputs.SaidNoMore("Battery failure"),
         inputs.ClockOdd(CLOCK_ODD),
         inputs.ClockAgrees(),
+        inputs.ReceiverLoses(SamplesLost(12.0)),
+        inputs.ReceiverKeepsUp(),
         inputs.WorkVetoed((CLOCK_ODD,)),
         inputs.WorkVetoed((VETO,)),
         inputs.WorkVetoed((BATTERY_VETO,)),

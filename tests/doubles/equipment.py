@@ -273,7 +273,7 @@ class FlatVehicle:
 class HummingReceiver:
     """One level all the time: the directions come from `PointingFinder`.
 
-    `mute` and `gone` are its faults; while `unheard`, no pulse that is due is heard.
+    `mute`, `gone` and `lost_percent` are its faults; while `unheard`, no pulse that is due is heard.
     """
 
     def __init__(self, clock: Clock) -> None:
@@ -281,6 +281,7 @@ class HummingReceiver:
         self.mute = False
         self.gone = False
         self.unheard = False
+        self.lost_percent = 0.0
         self.frequencies_hz: list[float] = []
 
     async def open(self, channels: Sequence[Channel]) -> None:

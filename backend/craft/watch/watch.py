@@ -17,6 +17,7 @@ from backend.craft.watch.battery import BatteryWatch
 from backend.craft.watch.clock import ClockWatch
 from backend.craft.watch.consumption import Consumption
 from backend.craft.watch.links import LinkWatch
+from backend.craft.watch.losses import LossWatch
 from backend.craft.watch.said import SaidWatch
 from backend.craft.watch.track import Track
 from backend.craft.watch.way_down import WayDown
@@ -40,6 +41,7 @@ class Watch:
     track: Track = field(default_factory=Track)
     _links: LinkWatch = field(default_factory=LinkWatch)
     _battery: BatteryWatch = field(default_factory=BatteryWatch)
+    _losses: LossWatch = field(default_factory=LossWatch)
     _clock: ClockWatch = field(default_factory=ClockWatch)
     _said: SaidWatch = field(default_factory=SaidWatch)
     _way_down: WayDown = field(default_factory=WayDown)
@@ -69,6 +71,7 @@ class Watch:
         self.look_at_authority()
         consoles = self.equipment.publisher.watchers() if self.equipment.watch_consoles else None
         self._give_all(self._links.look(telemetry, now, self.listening.trouble, consoles))
+        self._give_all(self._losses.look(self.listening.lost_percent, self.listening.trouble))
         self._give_all(self._clock.look(telemetry))
         self._give_all(self._battery.look(self.situation(), self.state(), self.limits))
         self._give_all(self._way_down.look(telemetry, now, self.state(), self.limits))

@@ -948,6 +948,7 @@ export const de: Record<MessageKey, string> = {
   "instruments.heading": "Kurs (rechtweisend)",
   "instruments.power": "Empfangsleistung",
   "instruments.settling": "Beim Kanalwechsel ausgelassen",
+  "instruments.lost": "Abtastwerte, die der Empfänger verliert",
   "instruments.viewers": "Konsolen, die zusehen",
   "instruments.database": "Journal",
   "instruments.database.ok": "hält Schritt",

@@ -59,6 +59,9 @@ function Values() {
     ...(craft?.value.settling_samples
       ? [{ label: "instruments.settling" as const, value: String(craft.value.settling_samples), age: ageS(0, craft.atMs, now) }]
       : []),
+    ...(craft?.value.receiver_lost_percent
+      ? [{ label: "instruments.lost" as const, value: `${formatNumber(craft.value.receiver_lost_percent, 1)}\u00a0%`, age: heard }]
+      : []),
     { label: "instruments.viewers", value: status ? String(status.value.viewers) : null, age: ageS(0, status?.atMs ?? null, now) },
     {
       label: "instruments.database",

@@ -42,6 +42,7 @@ const craftStatus = (changes: Partial<CraftStatus>) =>
         resume_refused: null,
         alerts: [],
         settling_samples: 0,
+        receiver_lost_percent: 0,
         ...changes,
       },
     ],

@@ -2962,7 +2962,7 @@ export interface components {
          * @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
          *     resume_refused: while it holds or a pilot flies it, why resuming would be refused now. alerts: open ones of a craft
          *     that flies for no mission; a mission's alerts are its facts. settling_samples: left out, since the receiver was
-         *     changing to other channels.
+         *     changing to other channels. receiver_lost_percent: of what its device took in the last seconds.
          */
         CraftStatusMessage: {
             craft_id: string;
@@ -2980,6 +2980,8 @@ export interface components {
             alerts: components["schemas"]["CraftAlertMessage"][];
             /** @default 0 */
             settling_samples: number;
+            /** @default 0 */
+            receiver_lost_percent: number;
         };
         /** @description crossing_deg: the widest angle at which the place's line crosses that of a bearing. needed_deg: of a claim. */
         CrossesTooLittle: {

@@ -29,6 +29,8 @@ BEARING = 70.0
 class Hand:
     """Turns the vehicle back and forth on the ground; the receiver hears an emitter at BEARING by `pattern`."""
 
+    lost_percent = 0.0
+
     def __init__(self, stage: Stage, pattern: AntennaPattern, turned_deg: float = 400.0, late_s: float = 0.0) -> None:
         self.stage, self.pattern, self.turned, self.late_s = stage, pattern, turned_deg, late_s
         self.began_s = stage.clock.now()

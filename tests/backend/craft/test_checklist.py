@@ -21,7 +21,7 @@ from backend.spec import EmitterSpec, MissionSpec, Polygon
 from backend.terrain import Terrain
 from hardware.frame import LocalFrame
 from hardware.readings import CheckName, Place, ReturnAltitude
-from hardware.reasons.receiver import ReceiverUnplugged
+from hardware.reasons.receiver import ReceiverUnplugged, SamplesLost
 from planner.reason import remedy_of, text_of
 
 
@@ -116,6 +116,18 @@ async def test_a_receiver_that_is_gone_blocks_and_says_why() -> None:
     stage.receiver.gone = True
     check = (await checked(stage))["receiver"]
     assert (check.ok, check.blocking, check.reason) == (False, True, ReceiverUnplugged())
+
+
+@pytest.mark.parametrize("flies", [False, True])
+async def test_a_receiver_that_loses_samples_is_cautioned_about(flies: bool) -> None:
+    stage, mission = Stage(), spec()
+    stage.receiver.lost_percent = 12.5
+    listening = Listening(stage.receiver, stage.clock, channels_of(mission), 5.0)
+    listening.start()
+    found, _ = await checklist(mission, stage.craft(), listening if flies else None)
+    await listening.stop()
+    (check,) = (check for check in found if check.name == "receiver")
+    assert (check.ok, check.blocking, check.reason) == (False, False, SamplesLost(12.5))
 
 
 async def test_a_receiver_that_delivers_nothing_blocks() -> None:

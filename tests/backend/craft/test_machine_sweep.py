@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from craft_inputs import CLOCK_ODD
 from craft_sweep import Step, reachable, stepped, steps
@@ -17,6 +19,7 @@ from backend.craft.who_flies import kept_of
 from backend.events import OrderDone, OrderNotDone
 from backend.reasons.flight import OrderName
 from backend.search.effects import Record
+from hardware.reasons.receiver import SamplesLost
 
 # A million steps, made once, and without the tracer that would make them five times as slow.
 pytestmark = [pytest.mark.no_cover, pytest.mark.timeout(900)]
@@ -222,6 +225,20 @@ def test_no_sweep_is_begun_while_the_autopilots_headings_cannot_be_dated() -> No
         assert "clock" not in [raised.topic for raised in over.after.open_alerts], over.about
         assert sent(over.asked) == [], over.about
     assert min(began, held) > 10
+
+
+def test_what_a_receiver_loses_is_said_while_it_lasts_and_changes_nothing_else() -> None:
+    for step in steps(inputs.ReceiverLoses, inputs.ReceiverKeepsUp):
+        assert {type(effect) for effect in step.asked} <= {Record}, step.about
+        assert replace(step.after, open_alerts=(), alerts_raised=0) == replace(
+            step.craft, open_alerts=(), alerts_raised=0
+        ), step.about
+        if "receiver" in step.craft.links_down or not step.craft.engaged:
+            assert step.after == step.craft, step.about
+        else:
+            said = [raised.reason for raised in step.after.open_alerts if raised.topic == "receiver"]
+            loses = isinstance(step.given, inputs.ReceiverLoses)
+            assert said == ([SamplesLost(12.0)] if loses else []), step.about
 
 
 def test_nothing_moves_a_craft_that_is_not_engaged_but_its_start() -> None:

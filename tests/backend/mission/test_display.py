@@ -13,6 +13,7 @@ from backend.ports import CraftStatus
 from backend.reasons.flight import PlaceUnknown
 from backend.reasons.safety import NotGivenBack
 from backend.wire.messages import CraftStatusMessage
+from hardware.reasons.receiver import SamplesLost
 
 
 async def test_telemetry_and_status_are_shown_without_a_mission(stage: Stage) -> None:
@@ -38,14 +39,30 @@ async def test_the_status_says_what_the_craft_of_the_mission_does(stage: Stage) 
     running = stage.room.flights.running(mission_id)
     assert running is not None
     running.crafts[FIRST_CRAFT].listening.settling_samples = 7
+    stage.receiver.lost_percent = 3.0
     status = stage.room.display.status()
     assert (status.mission_id, status.phase) == (mission_id, "flying")
     (craft,) = status.crafts
     assert (craft.craft_id, craft.mission_id, craft.phase, craft.receiver) == (FIRST_CRAFT, mission_id, "flying", "ok")
     assert craft.receiver_power_db == -60.0
-    assert CraftStatusMessage.model_validate(craft, from_attributes=True).settling_samples == 7
+    told = CraftStatusMessage.model_validate(craft, from_attributes=True)
+    assert (told.settling_samples, told.receiver_lost_percent) == (7, 3.0)
     assert craft.battery_to_return_percent is not None
     assert craft.battery_to_return_percent > 0.0
+
+
+async def test_a_receiver_that_loses_a_good_part_of_its_samples_is_told_of_while_it_does(stage: Stage) -> None:
+    await stuck(stage)
+
+    def said() -> list[object]:
+        running = stage.room.flights.active
+        assert running is not None
+        return [raised.reason for raised in running.state.crafts[FIRST_CRAFT].open_alerts if raised.topic == "receiver"]
+
+    stage.receiver.lost_percent = 20.0
+    await stage.until_true(lambda: said() == [SamplesLost(20.0)])
+    stage.receiver.lost_percent = 0.0
+    await stage.until_true(lambda: said() == [])
 
 
 async def test_the_status_says_whether_resuming_would_be_accepted(stage: Stage) -> None:

@@ -27,7 +27,7 @@ from hardware.ports import ReceiverError
 from hardware.readings import Channel, PowerSample, Pulses
 from hardware.reasons.channels import CarriersOnly
 from hardware.reasons.payload import NoPayloadConnected, PayloadListening
-from hardware.reasons.receiver import NonsensicalPower, ReceiverUnplugged
+from hardware.reasons.receiver import NonsensicalPower, ReceiverUnplugged, SamplesLost
 
 TOKEN = "a-token-of-some-length"
 FREQUENCY_HZ = 868_300_000.0
@@ -42,6 +42,7 @@ class CountingReceiver:
         self.rate_hz = rate_hz
         self.channels: Sequence[Channel] = ()
         self.fails = 0
+        self.lost_percent = 0.0
 
     async def open(self, channels: Sequence[Channel]) -> None:
         self.channels = channels
@@ -236,6 +237,20 @@ async def test_samples_the_wire_cannot_carry_are_left_out_and_told(tmp_path: Pat
         await until(lambda: states["payload"].receiver == NonsensicalPower("nan"))
     assert all(number % 5 for number in got)
     assert got == sorted(set(got))
+
+
+async def test_what_the_payloads_radio_loses_is_told(tmp_path: Path) -> None:
+    radio = CountingReceiver()
+    radio.lost_percent = 20.0
+    async with running_server() as server, running_agent(tmp_path, server.port, radio):
+        states, receiver = server.hub.agents, PayloadReceiver(server.hub)
+        await receiver.open([CARRIER])
+        await until(lambda: states["payload"].receiver == SamplesLost(20.0))
+        assert not states["payload"].receiver_ok
+        assert receiver.lost_percent == 20.0
+        radio.lost_percent = 0.5
+        await until(lambda: states["payload"].receiver_ok)
+        assert receiver.lost_percent == 0.0
 
 
 async def test_server_tunes_the_payload_to_several_channels_and_it_remembers(tmp_path: Path) -> None:

@@ -35,10 +35,11 @@ class LosingSource:
     async def close(self) -> None: ...
 
 
-async def hear(every: int) -> int:
+async def hear(every: int) -> tuple[int, float]:
+    """(samples, percent lost at the end)"""
     receiver = IqReceiver(LosingSource(every))
     await receiver.open([Channel(868e6)])
-    return len([sample async for sample in receiver.samples()])
+    return len([sample async for sample in receiver.samples()]), receiver.lost_percent
 
 
 async def test_a_source_that_loses_most_of_its_samples_is_a_fault() -> None:
@@ -46,5 +47,6 @@ async def test_a_source_that_loses_most_of_its_samples_is_a_fault() -> None:
         await hear(3)
 
 
-async def test_a_source_that_loses_some_goes_on() -> None:
-    assert await hear(2) == 400
+async def test_a_source_that_loses_some_goes_on_and_it_is_told() -> None:
+    assert await hear(2) == (400, 50.0)
+    assert await hear(1) == (800, 0.0)

@@ -171,10 +171,10 @@ async def test_an_overflow_is_a_gap_and_a_timeout_is_none(device: type[FakeDevic
     device.script.update({2: OVERFLOW, 4: TIMEOUT})
     receiver = IqReceiver(SoapySource("driver=fake", RATE_HZ))
     await hear(receiver, 3)
-    assert receiver.lost_samples > 0
+    assert receiver.lost_percent > 0.0
     device.script.pop(2)
     await hear(receiver, 3)
-    assert receiver.lost_samples == 0
+    assert receiver.lost_percent == 0.0
 
 
 async def test_full_scale_of_an_8_bit_converter_is_flagged_as_clipped(device: type[FakeDevice]) -> None:
