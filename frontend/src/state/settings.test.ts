@@ -8,10 +8,13 @@ vi.mock("../i18n", async (original) => ({ ...(await original<typeof import("../i
 const settled = () => new Promise((resolve) => setTimeout(resolve));
 
 it("keeps what is known and right, and nothing else", () => {
-  const read = readSettings(JSON.stringify({ theme: "indoor", scale: "huge", stranger: 1 }));
-  expect(read.theme).toBe("indoor");
-  expect(read.scale).toBe(defaultSettings.scale);
-  expect(read).not.toHaveProperty("stranger");
+  const read = readSettings(JSON.stringify({ theme: "indoor", scale: "huge", speech: true, stranger: 1 }));
+  expect(read).toEqual({ ...defaultSettings, theme: "indoor", speech: true });
+});
+
+it("knows every value, not only its kind: a page in a theme that there is not shows nothing", () => {
+  const strange = { theme: "dark", scale: 40, units: "nautical", coordinates: "", language: "__proto__", tones: "on" };
+  expect(readSettings(JSON.stringify(strange))).toEqual(defaultSettings);
 });
 
 it("bears what is no settings at all", () => {

@@ -7,7 +7,7 @@ import { coordinateFormat, unitSystem } from "../units/shown";
 
 export interface Settings {
   theme: "outdoor" | "indoor";
-  scale: number;
+  scale: 0.85 | 1 | 1.15 | 1.3;
   units: UnitSystem;
   coordinates: CoordinateFormat;
   language: Language;
@@ -31,6 +31,15 @@ export const defaultSettings: Settings = {
   tourSeen: false,
 };
 
+/** What each may be; the others are on or off. */
+export const CHOICES = {
+  theme: ["outdoor", "indoor"],
+  scale: [0.85, 1, 1.15, 1.3],
+  units: ["metric", "imperial"],
+  coordinates: ["dd", "dms", "utm", "mgrs"],
+  language: ["en", "de"],
+} as const satisfies { [K in keyof Settings]?: readonly Settings[K][] };
+
 /** Unreadable or foreign entries are ignored: the defaults hold for them. */
 export function readSettings(stored: string | null): Settings {
   if (!stored) return defaultSettings;
@@ -42,7 +51,11 @@ export function readSettings(stored: string | null): Settings {
   }
   if (typeof parsed !== "object" || parsed === null) return defaultSettings;
   const given = parsed as Record<string, unknown>;
-  const known = Object.entries(defaultSettings).map(([key, value]) => [key, typeof given[key] === typeof value ? given[key] : value]);
+  const choices: Record<string, readonly unknown[]> = CHOICES;
+  const known = Object.entries(defaultSettings).map(([key, value]) => [
+    key,
+    (choices[key] ?? [true, false]).includes(given[key]) ? given[key] : value,
+  ]);
   return Object.fromEntries(known) as Settings;
 }
 
