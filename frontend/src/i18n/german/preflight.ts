@@ -154,6 +154,11 @@ export const preflight = {
       "und nach Hause und die Reserve. Mit weniger Drehungen kommt keine Suche aus.",
     remedy: "Den Akku wechseln, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es etwas gefunden hat.",
   },
+  first_turn_in_little_wind: {
+    text: "Bei Wind reicht der Akku mit {charge_percent} vielleicht nicht für die erste Drehung in {far_m} Entfernung und den Heimweg.",
+    remedy:
+      "Ihn laden oder wechseln, näher am Gebiet starten, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es gedreht hat.",
+  },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
     remedy: "Prüfen, ob er angesteckt ist und kein anderes Programm ihn benutzt.",
