@@ -45,8 +45,7 @@ export const safety = {
       "Das Fluggerät käme heim, bevor es in {far_m} Entfernung zum ersten Mal gedreht hat: Solange Wind und Fluggerät nicht bekannt " +
       "sind, werden für Hinweg und Drehung {takes_percent} angesetzt, für den Heimweg {needed_percent}, und die Reserve ist " +
       "{reserve_percent}. So voll ist kein Akku.",
-    remedy:
-      "Näher am Gebiet starten, ein näheres einzeichnen oder die Reserve eines Fluggeräts senken, das lange in der Luft bleibt.",
+    remedy: "Näher am Gebiet starten, ein näheres einzeichnen oder die Reserve eines Fluggeräts senken, das lange in der Luft bleibt.",
   },
   altitude_outside: {
     text: "{altitude_relative_m} über dem Startplatz liegt außerhalb der erlaubten {lowest_relative_m} bis {highest_relative_m}.",
