@@ -93,7 +93,7 @@ class FirstTurnInLittleWind:
     english: ClassVar[Words] = Words(
         "If it is windy, the battery, at {charge_percent}, may not last for the first turn, {far_m} away, and the way "
         "home.",
-        "Charge or change it, take off nearer to the area, or expect the craft to come home before it has turned.",
+        "Take off nearer to the area or with a fuller battery, or expect the craft to come home before it has turned.",
     )
 
 

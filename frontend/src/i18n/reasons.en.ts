@@ -1068,7 +1068,7 @@ export const reasonsEn: ReasonTable = {
   },
   first_turn_in_little_wind: {
     text: "If it is windy, the battery, at {charge_percent}, may not last for the first turn, {far_m} away, and the way home.",
-    remedy: "Charge or change it, take off nearer to the area, or expect the craft to come home before it has turned.",
+    remedy: "Take off nearer to the area or with a fuller battery, or expect the craft to come home before it has turned.",
   },
   no_samples: {
     text: "The receiver delivers no samples.",

@@ -156,7 +156,7 @@ export const preflight = {
   },
   first_turn_in_little_wind: {
     text: "Bei Wind reicht der Akku mit {charge_percent} vielleicht nicht für die erste Drehung in {far_m} Entfernung und den Heimweg.",
-    remedy: "Ihn laden oder wechseln, näher am Gebiet starten, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es gedreht hat.",
+    remedy: "Näher am Gebiet oder mit vollerem Akku starten, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es gedreht hat.",
   },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",
