@@ -1,4 +1,4 @@
-"""Would the battery bring the craft home before its first turn? Asked on the ground by what is asked in flight.
+"""Would the craft come home before its first turn? Asked on the ground by what is asked in flight.
 
 In flight the first place is held against the battery once it is chosen, after the climb, and one that is too far away
 brings the craft home: it took off for nothing. So the place is chosen before the start, by the same planner from the
@@ -14,7 +14,7 @@ from itertools import pairwise, product
 
 from backend.craft.endurance import CLIMB_M_S, Endurance, in_strong_wind
 from backend.craft.safety import Limits, Situation, battery_vetoes
-from backend.reasons import Reason, checks, safety
+from backend.reasons import Reason, carried, checks, safety
 from backend.search.choosing import choose_place
 from backend.search.planning import way_to
 from backend.search.state import SearchState
@@ -54,8 +54,8 @@ def first_turn(task: SearchTask, search: SearchState, limits: Limits, situation:
     try:
         choice = choose_place(task, search, here, 1, situation.now_s, threads)
         points = [here, *way_to(task.first, here, limits.frame.to_enu(choice.place))]
-    except PlannerError:
-        return FirstTurn()
+    except PlannerError as error:  # no place or no way: in flight there is nothing to plan, and it comes home
+        return FirstTurn(carried(error.reason))
     legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
     short = _short(limits, climbed, legs)
     far_m = sum(math.hypot(*leg) for leg in legs)

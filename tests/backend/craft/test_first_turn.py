@@ -113,6 +113,15 @@ def test_around_a_no_fly_area_the_way_is_as_long_as_it_is_flown() -> None:
     assert isinstance(round_it.refusal, safety.FirstTurnBeyondCharge)
 
 
+async def test_an_area_that_no_way_leads_to_is_refused() -> None:
+    """It took off, found nothing to plan, and came home."""
+    across = area_of(-141.0, 20.0, 141.0, 30.0)
+    (line,) = await of_battery(away(100.0, no_fly=[across]))
+    assert (line.name, line.ok, line.blocking) == ("safety", False, True)
+    left_open = area_of(-141.0, 20.0, 100.0, 30.0)
+    assert all(line.ok for line in await of_battery(away(100.0, no_fly=[left_open])))
+
+
 async def test_a_near_area_is_not_planned_for(monkeypatch: pytest.MonkeyPatch) -> None:
     def never(*_: object) -> None:
         raise AssertionError("nobody needs to know where it turns first")
