@@ -299,11 +299,11 @@ def _text(answer: dict[str, Any]) -> str:
         )
     place = answer["estimate"]
     lines = [
-        f"emitter at {place['lat']:.6f}, {place['lon']:.6f}, expected error {answer['expected_rmse_m']:.0f} m, "
-        f"from {answer['bearings']} bearings"
+        f"emitter at {place['lat']:.6f}, {place['lon']:.6f}, expected error {answer['expected_rmse_m']:.1f} m, "
+        f"from {answer['bearings']} bearing{'s' if answer['bearings'] != 1 else ''}"
     ]
     lines += [
-        f"all bearings turned clockwise by {one['bias_deg']:+.0f} ± {one['bias_std_error_deg']:.0f} degrees, "
+        f"all bearings turned clockwise by {round(one['bias_deg']):+d} ± {one['bias_std_error_deg']:.0f} degrees, "
         f"which is taken into account; their errors are {one['sigma_scale']:.1f} times what was stated"
         for one in answer["sources"]
     ]

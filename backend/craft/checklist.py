@@ -10,6 +10,7 @@ import numpy as np
 
 from backend.craft.endurance import Endurance, unknown
 from backend.craft.equipment import CraftEquipment
+from backend.craft.first_turn import FirstTurn, first_turn
 from backend.craft.ground_check import ground_checks, knows_nothing
 from backend.craft.listening import Listening, channels_for, channels_of
 from backend.craft.nets import nets_check
@@ -23,6 +24,7 @@ from backend.reasons import Reason, carried, checks
 from backend.reasons.refusals import NoHome
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways
+from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
 from backend.search.turn_schedule import heard_at_once, turn_s, turn_schedule
 from backend.spec import MissionSpec, Place
@@ -84,10 +86,13 @@ async def checklist(
     listening: Listening | None,
     antenna: CheckFact | None = None,
     grounds: Grounds | None = None,
+    search: SearchState | None = None,
 ) -> tuple[tuple[CheckFact, ...], SearchTask | None]:
     """All checks, and the task when the specification is sound. listening: that of a running mission, else None.
 
     antenna: what its check before a known emitter said, when there was one. grounds: where terrain is found, if any.
+    search: what is known before the start, from which the first place is chosen; None: it is not asked whether the
+    battery lasts for that.
     """
 
     def situation() -> Situation:
@@ -109,10 +114,16 @@ async def checklist(
         limits = limits_of(task)
         found.append(await nets_check(equipment.vehicle, limits))
         vetoes = start_vetoes(limits, await recent(situation))
+        first = FirstTurn()
+        if search is not None and not vetoes:
+            first = await asyncio.to_thread(first_turn, task, search, limits, situation(), equipment.threads)
+            vetoes = () if first.refusal is None else (first.refusal,)
         found += [_fact("safety", False, veto) for veto in vetoes]
         if not vetoes:
             found.append(_fact("safety", True, checks.StartAllowed()))
-            found += await asyncio.to_thread(_battery, limits, situation())
+            cautions = await asyncio.to_thread(_battery, limits, situation())
+            cautions += [] if cautions or first.caution is None else [first.caution]
+            found += [_fact("battery", False, caution, blocking=False) for caution in cautions]
     found.append(await _receiver(mission, equipment, listening))
     found.append(_pattern(mission, equipment))
     found += [] if antenna is None else [antenna]
@@ -184,18 +195,16 @@ def _fact(name: CheckName, ok: bool, reason: Reason, blocking: bool = True) -> C
     return CheckFact(name=name, ok=ok, reason=reason, blocking=blocking)
 
 
-def _battery(limits: Limits, situation: Situation) -> list[CheckFact]:
+def _battery(limits: Limits, situation: Situation) -> list[Reason]:
     """Cautions about the turns that a full battery, or this one, is sure to last for."""
     charge, corners = situation.telemetry.battery_percent, np.vstack(limits.problem.area)
     if not limits.battery_telemetry or charge is None:
         return []
     if not lasts_for(100.0, limits, unknown(), FEWEST_TURNS, corners.mean(axis=0)):
-        few = checks.FewTurnsOnABattery(FEWEST_TURNS, limits.measurement_time_s)
-        return [_fact("battery", False, few, blocking=False)]
+        return [checks.FewTurnsOnABattery(FEWEST_TURNS, limits.measurement_time_s)]
     farthest = corners[np.hypot(*corners.T).argmax()]
     if not lasts_for(charge, limits, situation.endurance, FEWEST_TURNS, farthest):
-        low = checks.FewTurnsOnThisCharge(charge, FEWEST_TURNS, limits.measurement_time_s)
-        return [_fact("battery", False, low, blocking=False)]
+        return [checks.FewTurnsOnThisCharge(charge, FEWEST_TURNS, limits.measurement_time_s)]
     return []
 
 

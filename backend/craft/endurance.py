@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -64,6 +64,11 @@ class Endurance:
         variance = np.einsum("ni,nij,nj->n", flown, self.spread, flown) + READING_PERCENT**2
         return self._kept((flown * self.take).sum(axis=1) + SPREAD * np.sqrt(variance))
 
+    def likely_percent(self, hover_s: float) -> float:
+        """Charge that hovering takes: the mean over the hypotheses, and no promise."""
+        in_wind = np.hypot(self.wind_east, self.wind_north) ** 3
+        return float(self.weight @ (hover_s * (self.take[:, 0] + in_wind * self.take[:, 1])))
+
     def _leg(self, leg: tuple[float, float], speed_m_s: float) -> tuple[FloatArray, FloatArray]:
         """(seconds, airspeed) by hypothesis: over the ground as fast as asked, or as the airspeed allows."""
         length = max(math.hypot(*leg), 1e-9)
@@ -95,6 +100,15 @@ def winds() -> tuple[FloatArray, FloatArray]:
     speeds = np.repeat(np.arange(0.5, FASTEST_WIND_M_S, 1.0), 16)
     towards = np.tile(np.arange(16) * math.tau / 16, len(speeds) // 16)
     return speeds * np.sin(towards), speeds * np.cos(towards)
+
+
+def in_strong_wind() -> tuple[Endurance, ...]:
+    """One for each direction. A climb tells which way the wind blows and hardly how fast, so that what is promised
+    after it holds for the fastest wind that way."""
+    still = unknown()
+    speed = np.hypot(still.wind_east, still.wind_north)
+    fastest = np.flatnonzero(speed > speed.max() - 1e-6)
+    return tuple(replace(still, weight=np.eye(len(speed))[one]) for one in fastest)
 
 
 @cache

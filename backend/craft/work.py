@@ -8,27 +8,23 @@ from __future__ import annotations
 import asyncio
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-
-from shapely.geometry.base import BaseGeometry
+from dataclasses import dataclass
 
 from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
+from backend.craft.first_turn import limits_with
 from backend.craft.listening import Listening
 from backend.craft.measuring import Measured, measure
 from backend.craft.on_the_way import heard_on_leg, nose_swung, swings_of
 from backend.craft.recent_telemetry import recent
 from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, turn_vetoes
-from backend.events import PlanChosen
 from backend.reasons import Reason, carried, safety
+from backend.search.choosing import choose_place
 from backend.search.closed_by_ground import closed_by_ground
-from backend.search.importance import come_first
-from backend.search.localization import Localization
-from backend.search.planning import next_place, next_place_together, way_to
+from backend.search.planning import way_to
 from backend.search.sector import TurnPlan, expected_here, must_be_whole, planned_turn, whole_turn
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
-from backend.search.turn_schedule import turn_s
 from backend.spec import Place
 from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.vehicle import PositionLost
@@ -62,8 +58,7 @@ class Work:
     @property
     def limits_now(self) -> Limits:
         """As the mission allows, with the turn that is made for what is still looked for."""
-        sought = [emitter.emitter_id for emitter in self.search().sought]
-        return replace(self.limits, measurement_time_s=turn_s(self.task.mission, sought))
+        return limits_with(self.limits, self.task.mission, self.search())
 
     async def take_off(self, effect: effects.TakeOff) -> inputs.CraftInput:
         """InTheAir, or WorkVetoed. Raises VehicleError."""
@@ -182,9 +177,19 @@ class Work:
         here, avoid, closed = self.task.frame.to_enu(position), effect.avoid, None
         tried = 0
         while True:
-            wanted = replace(effect, avoid=avoid)
             try:
-                choice = await asyncio.to_thread(self._choose, self.search(), here, wanted, closed)
+                choice = await asyncio.to_thread(
+                    choose_place,
+                    self.task,
+                    self.search(),
+                    here,
+                    effect.place_number,
+                    self.equipment.clock.now(),
+                    self.equipment.threads,
+                    self.equipment.craft_id,
+                    avoid,
+                    closed,
+                )
             except PlannerError as error:
                 return inputs.NothingToPlan(carried(error.reason))
             await recent(self.situation)
@@ -196,35 +201,6 @@ class Work:
             closed = await asyncio.to_thread(closed_by_ground, task.ground, task.mission.flight, task.fence, here)
         foreseen = choice.model_copy(update={"altitude_amsl_m": self.altitude_for(choice.place)})
         return inputs.Planned(foreseen, vetoes)
-
-    def _choose(
-        self,
-        search: SearchState,
-        platform: tuple[float, float],
-        effect: effects.PlanNext,
-        closed: BaseGeometry | None = None,
-    ) -> PlanChosen:
-        """For all emitters that are not localized, the most important first; each turn listens to all of them. closed:
-        m ENU."""
-        number, threads, craft_id = effect.place_number, self.equipment.threads, self.equipment.craft_id
-        sought = search.sought
-        ranks = {emitter.emitter_id: search.rank(emitter.emitter_id) for emitter in sought}
-        if len(sought) > 1 and self.task.mission.planner.method == "rollout":
-            wanted = [(self._about(search, e.emitter_id).without(closed), e.bearings) for e in sought]
-            choice = next_place_together(
-                wanted, platform, number, effect.avoid, threads, craft_id, list(ranks.values())
-            )
-        else:
-            emitter = next(iter(sought))
-            task = self._about(search, emitter.emitter_id).without(closed)
-            belief = task.planning_belief(task.planner_bearings(emitter.bearings))
-            choice = next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)
-        return choice.model_copy(update={"first": come_first(ranks), "set_back": search.set_back})
-
-    def _about(self, search: SearchState, emitter_id: str) -> Localization:
-        """Of an emitter as things stand now, with the turn that is made for what is still looked for."""
-        sought = [emitter.emitter_id for emitter in search.sought]
-        return self.task.together.about(search, emitter_id).turning_for(sought).asked(self.equipment.clock.now())
 
     def vetoes_against(self, place: Place, way: Sequence[tuple[float, float]] | None = None) -> tuple[Reason, ...]:
         """What safety has against flying to a place from where the vehicle is now. way: points in between (m ENU),

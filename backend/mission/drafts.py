@@ -69,7 +69,9 @@ class Drafts:
             runner = self.flights.running(mission_id)
             search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
             listening = self.flights.listening(craft.craft_id)
-            checks, _ = await checklist(search.mission, craft, listening, search.antenna, self.equipment.grounds)
+            checks, _ = await checklist(
+                search.mission, craft, listening, search.antenna, self.equipment.grounds, search
+            )
             await self.flights.give(mission_id, PreflightDone(checks))
         return PreflightChecked(passed=all(c.ok or not c.blocking for c in checks), checks=list(checks))
 

@@ -208,7 +208,7 @@ class Flights:
             elif state.search.deleted:
                 objections = (WasDeleted(),)
             listening, grounds = self.listening(craft.craft_id), self.equipment.grounds
-            checks, task = await checklist(known, craft, listening, state.search.antenna, grounds)
+            checks, task = await checklist(known, craft, listening, state.search.antenna, grounds, state.search)
             home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)
             software, antenna = self.equipment.software, antenna_fact(craft.flown_with(known.sensor).pattern)
             ground, not_kept = await self._keep_ground(task)

@@ -84,6 +84,20 @@ class FewTurnsOnThisCharge:
 
 
 @dataclass(frozen=True, slots=True)
+class FirstTurnInLittleWind:
+    """far_m: the way to the first place, which the battery is taken to last for unless it is windy."""
+
+    charge_percent: float
+    far_m: float
+    code: Literal["first_turn_in_little_wind"] = "first_turn_in_little_wind"
+    english: ClassVar[Words] = Words(
+        "If it is windy, the battery, at {charge_percent}, may not last for the first turn, {far_m} away, and the way "
+        "home.",
+        "Take off nearer to the area or with a fuller battery, or expect the craft to come home before it has turned.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoSamples:
     code: Literal["no_samples"] = "no_samples"
     english: ClassVar[Words] = Words(
@@ -213,6 +227,7 @@ CheckReason = (
     | TurnTakesLong
     | FewTurnsOnABattery
     | FewTurnsOnThisCharge
+    | FirstTurnInLittleWind
     | NoSamples
     | TagUnheard
     | PatternInUse

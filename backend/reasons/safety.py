@@ -112,6 +112,42 @@ class TurnBeyondBattery:
 
 
 @dataclass(frozen=True, slots=True)
+class FirstTurnBeyondCharge:
+    """far_m: the way to the first place; takes_percent: the climb, that way and a turn; needed_percent: the way home.
+    A full battery would do."""
+
+    charge_percent: float
+    far_m: float
+    takes_percent: float
+    needed_percent: float
+    reserve_percent: float
+    code: Literal["first_turn_beyond_charge"] = "first_turn_beyond_charge"
+    english: ClassVar[Words] = Words(
+        "Battery at {charge_percent}: the craft would come home before its first turn, {far_m} away. To get there and "
+        "turn {takes_percent} is set aside, {needed_percent} for the way home, and the reserve is {reserve_percent}.",
+        "Charge or change the battery, take off nearer to the area, or draw one that is nearer.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FirstTurnBeyondBattery:
+    """As `FirstTurnBeyondCharge`, and a full battery would not do."""
+
+    charge_percent: float
+    far_m: float
+    takes_percent: float
+    needed_percent: float
+    reserve_percent: float
+    code: Literal["first_turn_beyond_battery"] = "first_turn_beyond_battery"
+    english: ClassVar[Words] = Words(
+        "The craft would come home before its first turn, {far_m} away: to get there and turn {takes_percent} is set "
+        "aside as long as wind and craft are not known, {needed_percent} for the way home, and the reserve is "
+        "{reserve_percent}. No battery is full enough.",
+        "Take off nearer to the area, draw one that is nearer, or lower the reserve of a craft that stays up for long.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class AltitudeOutside:
     """All relative to home."""
 
@@ -256,6 +292,8 @@ SafetyReason = (
     | BatterySilent
     | BatteryShort
     | TurnBeyondBattery
+    | FirstTurnBeyondCharge
+    | FirstTurnBeyondBattery
     | AltitudeOutside
     | TooFarFromHome
     | AlreadyInAir

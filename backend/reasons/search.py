@@ -114,7 +114,7 @@ class BeliefBroke:
 @dataclass(frozen=True, slots=True)
 class Localized:
     code: Literal["localized"] = "localized"
-    english: ClassVar[Words] = Words("Localized: the expected error is below the threshold.")
+    english: ClassVar[Words] = Words("Localized: the expected error is within the goal.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,8 +125,7 @@ class LocalizedAgainst:
     bearings: int
     code: Literal["localized_against"] = "localized_against"
     english: ClassVar[Words] = Words(
-        "Localized: the expected error is below the threshold; it stands against {against} of "
-        "{bearings|bearing|bearings}."
+        "Localized: the expected error is within the goal; it stands against {against} of {bearings|bearing|bearings}."
     )
 
 

@@ -30,7 +30,7 @@ from backend.search.planning import in_nine_of_ten
 from backend.spec import LonLat, Place
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
-from planner.belief.verdict import missing_crossing
+from planner.belief.verdict import missing_crossing, stated
 from planner.geometry import contains
 from planner.options import PlannerOptions
 from planner.plan import plan
@@ -92,7 +92,7 @@ class Course:
 class Advice:
     """place: where to listen next. away_m, bearing_deg: as the crow flies. course: the way there.
 
-    error_now_m: expected error of the belief, error_then_m: about what is left of it after one bearing from there.
+    error_now_m: expected error as it is stated, error_then_m: about what is left of it after one bearing from there.
     mean_s, p90_s: until localized if every advice is followed; None: not known. bearings: that the advice knows of.
     hop: what to do there with a craft, None: listen with the antenna in one's hand.
     """
@@ -142,14 +142,16 @@ def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place,
     problem = replace(problem, crossing=missing_crossing(problem, task.rule, bearings, belief))
     decision = plan(problem, belief, bearings, entering, OPTIONS, threads=1)
     east, north = decision.x - start[0], decision.y - start[1]
-    now = estimate(belief, problem.estimator).expected_rmse
+    mean = estimate(belief, problem.estimator)
+    now = stated(belief, mean, task.rule.threshold).expected_rmse
+    left = _error_after(problem, belief, decision.x, decision.y) / mean.expected_rmse
     return Advice(
         place=task.place(decision.x, decision.y),
         away_m=math.hypot(east, north),
         bearing_deg=math.degrees(math.atan2(east, north)) % 360.0,
         course=_course(task, here, (decision.x, decision.y), going, laid),
         error_now_m=now,
-        error_then_m=_error_after(problem, belief, decision.x, decision.y),
+        error_then_m=now * left,
         mean_s=float(decision.times.mean()) if len(decision.times) else None,
         p90_s=in_nine_of_ten(decision.times),
         reason=carried(decision.reason),
@@ -229,7 +231,7 @@ def _for_people(task: Localization, around: BaseGeometry, speed_m_s: float, hop:
 
 
 def _error_after(problem: Problem, belief: GridBelief, x: float, y: float) -> float:
-    """Expected error after one bearing from (x, y), m: the mean over the directions that it may have.
+    """Mean distance after one bearing from (x, y), m: the mean over the directions that it may have.
 
     sum_z p(z) mu(b | z), the directions in bins of about one sigma: p(z) is the mass that lies there, and what is left
     of the belief is weighed with the bearing's likelihood.

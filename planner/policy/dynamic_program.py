@@ -65,7 +65,8 @@ def best_places(
 
     Chosen greedily from the program's nodes and half-way between them, on all sides of the mean, so that no two are
     close to each other; where no straight flight may do, and where constraints leave none of these, from the lattice.
-    usable: as in `constrained_actions`.
+    usable: as in `constrained_actions`, and what is compared is chosen among these: of those near to each other about a
+    refused place none might be left.
     """
     here = np.array(platform, dtype=float)
     frame = belief_frame(belief)
@@ -76,6 +77,8 @@ def best_places(
     if len(places) < 2:
         places = constrained_actions(problem, belief, usable)
     places = far_enough(problem, here, places)
+    if usable is not None and len(left := usable(places)) > 0:
+        places = left
     seconds = _flights(problem, here, places) + after_at(after, nodes(), frame, places)
     order = np.argsort(seconds, kind="stable")
     chosen = _apart(places[order], count, max(LEAST_APART, SHARE_APART * frame.s1))

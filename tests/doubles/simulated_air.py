@@ -51,6 +51,8 @@ class SimulatedLink:
         self._tasks: list[asyncio.Task[None]] = []
 
     async def open(self, timeout_s: float) -> None:
+        if self._tasks:  # a room connects what `simulated` has connected, and there is one autopilot
+            return
         self._tasks = [asyncio.create_task(self._fly()), asyncio.create_task(self._beat())]
 
     async def _fly(self) -> None:

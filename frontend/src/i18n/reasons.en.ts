@@ -1066,6 +1066,10 @@ export const reasonsEn: ReasonTable = {
     text: "At {charge_percent} the battery may not last for {turns|turn|turns} of {turn_s}, the ways to the far end of the area and home, and the reserve. No search takes fewer turns.",
     remedy: "Change the battery, or expect the craft to come home before it has found anything.",
   },
+  first_turn_in_little_wind: {
+    text: "If it is windy, the battery, at {charge_percent}, may not last for the first turn, {far_m} away, and the way home.",
+    remedy: "Take off nearer to the area or with a fuller battery, or expect the craft to come home before it has turned.",
+  },
   no_samples: {
     text: "The receiver delivers no samples.",
     remedy: "Check that it is plugged in and not in use by another program.",
@@ -1586,6 +1590,14 @@ export const reasonsEn: ReasonTable = {
     text: "A turn takes {turn_s}, for which {takes_percent} of a battery is set aside as long as wind and craft are not known. With {needed_percent} for the way home and a reserve of {reserve_percent} no battery is full enough.",
     remedy: "Look for fewer emitters or for a signal that is sent more often, or lower the reserve of a craft that stays up for long.",
   },
+  first_turn_beyond_charge: {
+    text: "Battery at {charge_percent}: the craft would come home before its first turn, {far_m} away. To get there and turn {takes_percent} is set aside, {needed_percent} for the way home, and the reserve is {reserve_percent}.",
+    remedy: "Charge or change the battery, take off nearer to the area, or draw one that is nearer.",
+  },
+  first_turn_beyond_battery: {
+    text: "The craft would come home before its first turn, {far_m} away: to get there and turn {takes_percent} is set aside as long as wind and craft are not known, {needed_percent} for the way home, and the reserve is {reserve_percent}. No battery is full enough.",
+    remedy: "Take off nearer to the area, draw one that is nearer, or lower the reserve of a craft that stays up for long.",
+  },
   altitude_outside: {
     text: "{altitude_relative_m} above home is outside the allowed {lowest_relative_m} to {highest_relative_m}.",
     remedy: "Change the mission's altitude or its band.",
@@ -1675,11 +1687,11 @@ export const reasonsEn: ReasonTable = {
     remedy: "Leave out the bearing that came last, or order the return.",
   },
   localized: {
-    text: "Localized: the expected error is below the threshold.",
+    text: "Localized: the expected error is within the goal.",
     remedy: "",
   },
   localized_against: {
-    text: "Localized: the expected error is below the threshold; it stands against {against} of {bearings|bearing|bearings}.",
+    text: "Localized: the expected error is within the goal; it stands against {against} of {bearings|bearing|bearings}.",
     remedy: "",
   },
   recording_too_long: {

@@ -7,6 +7,7 @@ import { slideNext } from "../commands/suggested";
 import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
+import { unbroken } from "../units/unbroken";
 import type { CheckFact } from "../wire";
 import { ProblemNote } from "./ProblemNote";
 
@@ -66,8 +67,8 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
                       {check.ok ? "✓" : check.blocking ? "✕" : "!"}
                     </span>
                     <span>
-                      <strong>{t(`check.${check.name}` satisfies MessageKey)}</strong> {reasonText(check.reason)}
-                      {!check.ok && remedy && <em class="problem-remedy">{t("problem.remedy", { remedy })}</em>}
+                      <strong>{t(`check.${check.name}` satisfies MessageKey)}</strong> {unbroken(reasonText(check.reason))}
+                      {!check.ok && remedy && <em class="problem-remedy">{t("problem.remedy", { remedy: unbroken(remedy) })}</em>}
                     </span>
                   </li>
                 );

@@ -41,6 +41,13 @@ async def hear(client: httpx.AsyncClient, mission: str, number: int, at: tuple[f
     assert answer.status_code == 201, answer.text
 
 
+async def stated_m(client: httpx.AsyncClient, mission: str) -> float:
+    """As the page shows it: what the last belief's fact says."""
+    asked = await client.get(f"/api/missions/{mission}/events", params={"limit": 5000})
+    said = [one["event"] for one in asked.json()["events"] if one["event"]["kind"] == "belief_updated"]
+    return said[-1]["estimate"]["expected_rmse_m"]
+
+
 async def test_following_the_advice_localizes_without_any_craft(client: httpx.AsyncClient) -> None:
     mission = await drafted(client)
     here = (-150.0, -20.0)
@@ -53,6 +60,8 @@ async def test_following_the_advice_localizes_without_any_craft(client: httpx.As
             break
         assert told["bearings"] == number
         assert told["error_then_m"] < told["error_now_m"]
+        if number:
+            assert told["error_now_m"] == pytest.approx(await stated_m(client, mission)), "the page states another"
         errors.append(told["error_now_m"])
         to = FRAME.to_enu(Place(told["place"]["lat"], told["place"]["lon"]))
         assert told["away_m"] == pytest.approx(math.dist(here, to), abs=1.0)

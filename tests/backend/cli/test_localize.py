@@ -148,3 +148,20 @@ def test_a_common_offset_of_all_bearings_is_found_and_taken_off(tmp_path: Path) 
     wrong = CliRunner().invoke(APP, [path, "--errors", "some"])
     assert wrong.exit_code == 2
     assert "choose one of independent, joint" in wrong.stderr
+
+
+def test_an_error_of_decimetres_is_told_as_it_is_claimed(tmp_path: Path) -> None:
+    """A goal below a metre was told as reached within "0 m"."""
+    places = ((0, 0), (75, 0), (30, 105), (-24, 45), (78, 45), (0, 90))
+    file = written(tmp_path, [(x, y, bearing_to(x, y, 36.0, 42.0)) for x, y in places], sigma=0.6)
+    asked = [str(file), "--range", "150", "--threshold", "0.9"]
+    told = json.loads(CliRunner().invoke(APP, [*asked, "--json"]).stdout)["expected_rmse_m"]
+    assert told < 0.9
+    text = CliRunner().invoke(APP, asked).stdout
+    assert f"expected error {told:.1f} m, from 6 bearings" in text
+
+
+def test_one_bearing_is_told_in_the_singular_and_turned_by_no_minus_zero(tmp_path: Path) -> None:
+    text = CliRunner().invoke(APP, [str(written(tmp_path, [(0.0, 0.0, 40.0)]))]).stdout
+    assert "from 1 bearing\n" in text
+    assert "-0 " not in text

@@ -88,6 +88,22 @@ def test_places_to_compare_are_allowed_apart_and_best_first():
     assert not ((forbidden > 100) & (forbidden < [145, 140])).all(axis=1).any()
 
 
+def test_what_may_not_be_used_is_left_out_before_places_are_compared():
+    """After a turn in vain none of the best few lay a standoff away, and the next turn was made 34 m from it."""
+    keep(kept := table(PROBLEM))
+    belief = prior_belief(PROBLEM)
+    vain = best_places(PROBLEM, belief, START, kept, 1)[0][0]
+
+    def usable(places):
+        return places[np.hypot(*(places - vain).T) >= 60.0]
+
+    places, _ = best_places(PROBLEM, belief, START, kept, 8, usable)
+    assert len(places) == 8
+    assert np.hypot(*(places - vain).T).min() >= 60.0
+    without, _ = best_places(PROBLEM, belief, START, kept, 8, lambda some: some[:0])
+    assert len(without) == 8, "who is left nothing hears so later"
+
+
 def test_a_standoff_holds_for_every_place_compared():
     far = replace(PROBLEM, standoff=25.0)
     belief = fold(far, [Bearing(150.0, 0.0, 1.55, far.sigma)])

@@ -84,9 +84,9 @@ export const flight = {
     text: "Alle Peilungen sind um etwa {bias_deg} ± {std_error_deg} verdreht; bei der Ortung ist das berücksichtigt.",
     remedy: "Kompass und Befestigung der Antenne vor dem nächsten Flug prüfen.",
   },
-  localized: { text: "Gefunden: Der erwartete Fehler liegt unter der Schwelle.", remedy: "" },
+  localized: { text: "Gefunden: Der erwartete Fehler ist nicht größer als das Ziel.", remedy: "" },
   localized_against: {
-    text: "Gefunden: Der erwartete Fehler liegt unter der Schwelle; {against} von {bearings|Peilung|Peilungen} {against?1=spricht|*=sprechen} dagegen.",
+    text: "Gefunden: Der erwartete Fehler ist nicht größer als das Ziel; {against} von {bearings|Peilung|Peilungen} {against?1=spricht|*=sprechen} dagegen.",
     remedy: "",
   },
   sweep_incomplete: {

@@ -123,8 +123,8 @@ export const preflight = {
     remedy: "{parameter} auf 0 setzen oder die Höchsthöhe der Mission anheben.",
   },
   home_moves_here: {
-    text: "Der Startplatz des Autopiloten liegt {away_m} entfernt. Er rückt beim Scharfschalten hierher, wenn ihn niemand festgelegt hat; sonst führt die eigene Rückkehr dorthin.",
-    remedy: "Hat eine Bodenstation den Startplatz gesetzt, ihn dorthin setzen, wo das Fahrzeug steht.",
+    text: "Der Startplatz des Autopiloten liegt {away_m} entfernt. Er rückt beim Scharfschalten hierher, wenn ihn niemand festgelegt hat; sonst führt seine eigene Rückkehr dorthin.",
+    remedy: "Hat eine Bodenstation den Startplatz gesetzt, ihn dorthin setzen, wo das Fluggerät steht.",
   },
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },
@@ -153,6 +153,10 @@ export const preflight = {
       "Bei {charge_percent} reicht der Akku vielleicht nicht für {turns} Drehungen zu {turn_s}, die Wege ans ferne Ende des Gebiets " +
       "und nach Hause und die Reserve. Mit weniger Drehungen kommt keine Suche aus.",
     remedy: "Den Akku wechseln, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es etwas gefunden hat.",
+  },
+  first_turn_in_little_wind: {
+    text: "Bei Wind reicht der Akku mit {charge_percent} vielleicht nicht für die erste Drehung in {far_m} Entfernung und den Heimweg.",
+    remedy: "Näher am Gebiet oder mit vollerem Akku starten, oder damit rechnen, dass das Fluggerät heimkehrt, bevor es gedreht hat.",
   },
   no_samples: {
     text: "Der Empfänger liefert keine Messwerte.",

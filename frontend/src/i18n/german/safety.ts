@@ -34,6 +34,19 @@ export const safety = {
       "Weniger Sender oder ein Signal suchen, das öfter gesendet wird, oder die Reserve eines Fluggeräts senken, das lange in der " +
       "Luft bleibt.",
   },
+  first_turn_beyond_charge: {
+    text:
+      "Akku {charge_percent}: Das Fluggerät käme heim, bevor es in {far_m} Entfernung zum ersten Mal gedreht hat. Für Hinweg und " +
+      "Drehung werden {takes_percent} angesetzt, für den Heimweg {needed_percent}, und die Reserve ist {reserve_percent}.",
+    remedy: "Den Akku laden oder wechseln, näher am Gebiet starten oder ein näheres einzeichnen.",
+  },
+  first_turn_beyond_battery: {
+    text:
+      "Das Fluggerät käme heim, bevor es in {far_m} Entfernung zum ersten Mal gedreht hat: Solange Wind und Fluggerät nicht bekannt " +
+      "sind, werden für Hinweg und Drehung {takes_percent} angesetzt, für den Heimweg {needed_percent}, und die Reserve ist " +
+      "{reserve_percent}. So voll ist kein Akku.",
+    remedy: "Näher am Gebiet starten, ein näheres einzeichnen oder die Reserve eines Fluggeräts senken, das lange in der Luft bleibt.",
+  },
   altitude_outside: {
     text: "{altitude_relative_m} über dem Startplatz liegt außerhalb der erlaubten {lowest_relative_m} bis {highest_relative_m}.",
     remedy: "Die Höhe der Mission oder ihren Bereich ändern.",
