@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from planner.belief.grid import centres
+from planner.belief.sharp import Crossings
 from planner.types import BoolArray, FloatArray
 
 FEW_CELLS = 3000
@@ -40,9 +41,17 @@ Weigh = Callable[[FloatArray, FloatArray], FloatArray]
 """x, y (c,) to the logarithm (c,) of the likelihood there."""
 
 
-def weighed_in_blocks(prior: FloatArray, x0: float, y0: float, h: float, weigh: Weigh, few: int = FEW_CELLS) -> Places:
+def weighed_in_blocks(
+    prior: FloatArray,
+    x0: float,
+    y0: float,
+    h: float,
+    weigh: Weigh,
+    few: int = FEW_CELLS,
+    sharp: Crossings | None = None,
+) -> Places:
     """prior: (ny, nx) mass of the cells, not all of them 0; x0, y0: south-west corner, m ENU; h: cell size, m. few:
-    cells that are not worth blocks."""
+    cells that are not worth blocks. sharp: around these, within the grid, every cell is weighed."""
     side = 1
     while side < WIDEST and prior.size / side**2 > few:
         side *= 2
@@ -58,6 +67,8 @@ def weighed_in_blocks(prior: FloatArray, x0: float, y0: float, h: float, weigh: 
         x, y = centres(x0, side * h, log.shape[1])[columns], centres(y0, side * h, log.shape[0])[rows]
         log[asked] = weigh(x, y)
         split = _uneven(mass, log, asked) if side > 1 else np.zeros_like(asked)
+        if side > 1 and sharp is not None:
+            split |= asked & _around_points(log.shape, (sharp.y - y0) / (side * h), (sharp.x - x0) / (side * h))
         left = ~split[asked]
         found.append((x[left], y[left], mass[asked][left], log[asked][left]))
         if side == 1:
@@ -83,6 +94,13 @@ def _uneven(mass: FloatArray, log: FloatArray, asked: BoolArray) -> BoolArray:
     split = np.zeros(asked.size, dtype=bool)
     split[order[np.cumsum(differs.ravel()[order]) > EVEN]] = True
     return split.reshape(asked.shape) & asked
+
+
+def _around_points(shape: tuple[int, ...], row: FloatArray, column: FloatArray) -> BoolArray:
+    """Which blocks hold one of the points, or are next to one that does."""
+    found = np.zeros(shape)
+    found[row.astype(int), column.astype(int)] = 1.0
+    return _around(found, np.maximum) > 0.0
 
 
 def _around(level: FloatArray, pick: np.ufunc) -> FloatArray:

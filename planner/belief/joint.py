@@ -29,6 +29,7 @@ from planner.belief.grid import (
     prior_belief,
     smallest_set,
 )
+from planner.belief.sharp import Crossings, crossings
 from planner.belief.source_errors import EVEN_STEP, ErrorPrior, Nodes, SourceErrors, nodes
 from planner.detection import DetectionModel, Silence, silence_log_likelihood
 from planner.observation import validate_bearing
@@ -47,6 +48,9 @@ MANY_CELLS = 128 * 128
 COARSEST_CELLS = 12
 """Cells along the longer side of the 95 % region that any grid must have."""
 DEEPEST_REFINEMENT = 16
+MOST_SHARP_CELLS = 512 * 512
+"""Of a grid that must be fine since its bearings cross sharply; most of its cells are weighed in blocks."""
+NONE_SHARP = Crossings(np.empty(0), np.empty(0), np.empty(0))
 NO_MASS = 1e-16
 """Of a block: all that hold less hold nothing that a sum over the places would show."""
 LEAST_DENSITY = 1e-7
@@ -153,12 +157,17 @@ def update_joint(belief: JointBelief, bearing: Bearing, weighing: Weighing = com
 def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.Weigher) -> JointBelief:
     """All that is known weighed again on the belief's cells, cropped and refined."""
     sources = _sources(belief, weighing)
-    belief, places = _weighed(belief, sources)
+    sharp = crossings(belief.folded)
+    if _within(sharp, belief).resolved(belief.h):
+        sharp = NONE_SHARP
+    while not _within(sharp, belief).resolved(belief.h) and 4 * belief.density.size <= MOST_SHARP_CELLS:
+        belief = _refined(belief)
+    belief, places = _weighed(belief, sources, sharp)
     belief = _cropped(belief)
     for _ in range(DEEPEST_REFINEMENT):
         if not _coarse(belief):
             break
-        belief, places = _weighed(_refined(belief), sources)
+        belief, places = _weighed(_refined(belief), sources, sharp)
         belief = _cropped(belief)
     return replace(belief, errors=tuple(_errors(one, places) for one in sources if one.bearings))
 
@@ -235,7 +244,9 @@ def _still_possible(grid: Nodes, before: SourceErrors | None) -> Nodes:
     return grid.among((steps > math.floor(low) - 1e-9) & (steps < math.ceil(high) + 1e-9))
 
 
-def _weighed(belief: JointBelief, sources: Sequence[_Source]) -> tuple[JointBelief, Places]:
+def _weighed(
+    belief: JointBelief, sources: Sequence[_Source], sharp: Crossings = NONE_SHARP
+) -> tuple[JointBelief, Places]:
     """The mass of each cell of the grid by all that is known, and the blocks of cells in which it was found."""
 
     def weigh(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -243,8 +254,13 @@ def _weighed(belief: JointBelief, sources: Sequence[_Source]) -> tuple[JointBeli
         return sum((one.weigher.log(x, y) for one in sources), start=log)
 
     few = FEW_DEAR_CELLS if belief.stretches else FEW_CELLS
-    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few)
+    near = _within(sharp, belief)
+    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few, near if len(near.x) else None)
     return replace(belief, density=places.density), places
+
+
+def _within(sharp: Crossings, belief: JointBelief) -> Crossings:
+    return sharp.within(*belief.bounds)
 
 
 def _errors(source: _Source, places: Places) -> SourceErrors:

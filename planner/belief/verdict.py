@@ -34,6 +34,8 @@ FAR_ERRORS = 3.0
 MOST_BEYOND = 0.02
 """Probability that the error is larger than three times the goal, of a joint belief. Twice what outliers at their usual
 rate leave of a belief of a few bearings, so that it only stops what is not yet settled."""
+WITHIN_A_CELL = (math.sqrt(2.0) + math.asinh(1.0)) / 6.0
+"""Mean distance of a square's points from its centre, over its side."""
 LINE = math.sqrt(math.pi / 2.0)
 """The standard deviation of a normal distribution along a line, over its mean distance."""
 
@@ -139,12 +141,14 @@ def stated(belief: GridBelief, mean: Estimate, goal: float) -> Estimate:
 
 def _judged(belief: GridBelief, mean: Estimate) -> float:
     """m, the error that a claim is judged by: the mean distance, of a joint belief at least a third of the radius that
-    leaves MOST_BEYOND outside.
+    leaves MOST_BEYOND outside, and that of a cell's points from its centre.
 
     Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean distance says too little.
     """
-    error = mean.expected_rmse
-    if not isinstance(belief, JointBelief | MovingBelief) or _beyond(belief, mean, error) <= MOST_BEYOND:
+    if not isinstance(belief, JointBelief | MovingBelief):
+        return mean.expected_rmse
+    error = max(mean.expected_rmse, WITHIN_A_CELL * belief.h)
+    if _beyond(belief, mean, error) <= MOST_BEYOND:
         return error
     return max(error, radius_of(belief, mean.x, mean.y, 1.0 - MOST_BEYOND) / FAR_ERRORS)
 

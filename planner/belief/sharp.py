@@ -1,0 +1,61 @@
+"""Bearings that are narrower than cells: where their lines cross, so that no cell's centre has to lie there by chance.
+
+A bearing of 2 degrees is 2 m wide at 60 m. On cells of 20 m, as an area of 2 km begins with, the centres miss the place
+where several such bearings cross, and what is left to the belief are outliers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from planner.belief.evidence import SMALLEST_SIGMA
+from planner.types import Bearing, FloatArray
+
+MOST_BEARINGS = 12
+"""The last ones, of which every two are crossed."""
+TURNS = np.deg2rad(np.arange(-20.0, 20.5, 1.0))
+"""rad, what the compass of all may be off by: two standard deviations of the worst."""
+CELLS_A_WIDTH = 0.4
+"""A crossing of bearings is resolved where their standard deviation is at least so many cells wide."""
+SHARPEST = 0.25
+"""Of the crossings: so many may be sharper than what is resolved, since some lie next to a place."""
+
+
+class Crossings(NamedTuple):
+    """x, y: (m,) m ENU. width: (m,) m, standard deviation of the narrower of the two bearings there."""
+
+    x: FloatArray
+    y: FloatArray
+    width: FloatArray
+
+    def within(self, x0: float, y0: float, x1: float, y1: float) -> Crossings:
+        """Those in a rectangle, m ENU."""
+        inside = (self.x > x0) & (self.x < x1) & (self.y > y0) & (self.y < y1)
+        return Crossings(self.x[inside], self.y[inside], self.width[inside])
+
+    def resolved(self, h: float) -> bool:
+        """By cells of h m."""
+        return len(self.width) == 0 or h * CELLS_A_WIDTH <= float(np.quantile(self.width, SHARPEST))
+
+
+def crossings(bearings: Sequence[Bearing]) -> Crossings:
+    """Ahead of both, of every two bearings, turned together by each of TURNS."""
+    taken = bearings[-MOST_BEARINGS:]
+    place = np.array([(b.x, b.y) for b in taken]).reshape(-1, 2)
+    sigma = np.array([max(b.sigma, SMALLEST_SIGMA) for b in taken])
+    first, second = np.triu_indices(len(taken), 1)
+    angle = np.array([b.angle for b in taken])[:, None] - TURNS
+    along = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    d1, d2, apart = along[first], along[second], (place[second] - place[first])[:, None, :]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # place_1 + s d1 = place_2 + t d2
+        sine = d1[..., 0] * d2[..., 1] - d1[..., 1] * d2[..., 0]
+        s = (apart[..., 0] * d2[..., 1] - apart[..., 1] * d2[..., 0]) / sine
+        t = (apart[..., 0] * d1[..., 1] - apart[..., 1] * d1[..., 0]) / sine
+        ahead = (s > 0.0) & (t > 0.0)
+        found = place[first][:, None, :] + s[..., None] * d1
+        width = np.minimum(s * sigma[first][:, None], t * sigma[second][:, None])
+    return Crossings(found[ahead][:, 0], found[ahead][:, 1], width[ahead])
