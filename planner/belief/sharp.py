@@ -20,8 +20,8 @@ TURNS = np.deg2rad(np.arange(-20.0, 20.5, 1.0))
 """rad, what the compass of all may be off by: two standard deviations of the worst."""
 CELLS_A_WIDTH = 0.4
 """A crossing of bearings is resolved where their standard deviation is at least so many cells wide."""
-SHARPEST = 0.25
-"""Of the crossings: so many may be sharper than what is resolved, since some lie next to a place."""
+APART_M = 15.0
+"""Two bearings from nearer to each other cross next to their places, whatever they see."""
 
 
 class Crossings(NamedTuple):
@@ -37,8 +37,8 @@ class Crossings(NamedTuple):
         return Crossings(self.x[inside], self.y[inside], self.width[inside])
 
     def resolved(self, h: float) -> bool:
-        """By cells of h m."""
-        return len(self.width) == 0 or h * CELLS_A_WIDTH <= float(np.quantile(self.width, SHARPEST))
+        """Half of them or more, by cells of h m: some lie next to a place and are narrower than any cell."""
+        return len(self.width) == 0 or h * CELLS_A_WIDTH <= float(np.median(self.width))
 
 
 def crossings(bearings: Sequence[Bearing]) -> Crossings:
@@ -47,6 +47,8 @@ def crossings(bearings: Sequence[Bearing]) -> Crossings:
     place = np.array([(b.x, b.y) for b in taken]).reshape(-1, 2)
     sigma = np.array([max(b.sigma, SMALLEST_SIGMA) for b in taken])
     first, second = np.triu_indices(len(taken), 1)
+    far = np.hypot(*(place[second] - place[first]).T) >= APART_M
+    first, second = first[far], second[far]
     angle = np.array([b.angle for b in taken])[:, None] - TURNS
     along = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     d1, d2, apart = along[first], along[second], (place[second] - place[first])[:, None, :]
