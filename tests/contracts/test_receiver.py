@@ -113,6 +113,10 @@ class LoopbackPayload:
         self.task: asyncio.Task[None] | None = None
         self.next = 1
 
+    @property
+    def lost_percent(self) -> float:
+        return self.receiver.lost_percent
+
     async def open(self, channels: Sequence[Channel]) -> None:
         if self.task is None:
             self.session.receive(
@@ -201,6 +205,13 @@ async def hear_each(receiver: Receiver, channels: Sequence[Channel], count: int)
     await receiver.close()
     assert min(map(len, heard.values())) >= count, "it ended before"
     return heard
+
+
+async def test_a_receiver_that_loses_nothing_says_so(receiver: Receiver) -> None:
+    assert receiver.lost_percent == 0.0
+    await receiver.open([Channel(FREQUENCY_HZ)])
+    await first(receiver, 5)
+    assert receiver.lost_percent == 0.0
 
 
 async def test_samples_are_finite_in_time_order_and_of_the_asked_frequency(receiver: Receiver) -> None:
