@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Literal
 
 import numpy as np
@@ -19,7 +20,8 @@ from backend.api.suggestion import suggested_mission
 from backend.cli.field_gyration import GYRATION, circling, heard_circling
 from backend.cli.field_legs import Listens, flown, listened
 from backend.cli.field_rivals import RIVALS
-from backend.events import BearingMeasured, BeliefUpdated, CraftSource, HeardOnTheWay
+from backend.craft.state import retakes
+from backend.events import BearingMeasured, BeliefUpdated, CraftSource, HeardOnTheWay, SweepRejected
 from backend.reasons.turning import WayToldEnough
 from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
@@ -182,11 +184,11 @@ class FieldStudy:
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
         measured, legs = list[BearingMeasured](), list[HeardOnTheWay]()
         here, heading, time_s = HOME_XY, 0.0, 0.0
-        sweeps, retakes, passed, turned_deg = 0, 0, 0, 0.0
-        way_deg, turned_at = 0.0, list[tuple[float, float]]()
+        sweeps, rejected, passed, turned_deg = 0, 0, 0, 0.0
+        way_deg, turned_at, avoid = 0.0, list[tuple[float, float]](), list[tuple[float, float]]()
         fact, belief = task.belief_fact(measured)
         while not fact.localized and sweeps + passed < self.spec.localization.maximum_bearings:
-            place = self._choose(task, belief, measured, here, rng)
+            place = self._choose(task, belief, measured, here, rng, avoid)
             way = np.array(place) - np.array(here)
             length, flown_s = float(np.hypot(*way)), 0.0
             if length > 0.0:
@@ -210,7 +212,7 @@ class FieldStudy:
                 passed, time_s = passed + 1, time_s + PAUSE_S
                 continue
             turned_at.append(place)
-            for attempt in range(1, 2 + self.spec.sensor.maximum_retakes):
+            for attempt in count(1):
                 plan = self._turn(measured, here, attempt)
                 swing_s = 0.0 if plan.begin_deg is None else _apart(heading, plan.begin_deg) / rate
                 found, turned, looks = self.measured(field, here, sweeps, plan)
@@ -221,12 +223,16 @@ class FieldStudy:
                 if plan.begin_deg is not None:
                     heading = math.radians(90.0 - plan.begin_deg - turned)
                 sweeps += 1
-                if found is not None:
+                if isinstance(found, BearingMeasured):
                     measured.append(found)
+                    avoid.clear()
                     break
-                retakes += 1
+                rejected += 1
+                if attempt > retakes(self.spec.sensor.maximum_retakes, bool(measured), found.reason):
+                    avoid.append(place)
+                    break
             fact, belief = task.belief_fact(measured)
-        return self._ended(field, fact, belief, measured, time_s, retakes, turned_deg + way_deg), belief
+        return self._ended(field, fact, belief, measured, time_s, rejected, turned_deg + way_deg), belief
 
     def _passes(self, leg: HeardOnTheWay, measured: Sequence[BearingMeasured], fact: BeliefUpdated) -> bool:
         """Whether a mission that never stops does not turn after this leg."""
@@ -286,14 +292,15 @@ class FieldStudy:
         measured: Sequence[BearingMeasured],
         here: tuple[float, float],
         rng: np.random.Generator,
+        avoid: Sequence[tuple[float, float]] = (),
     ) -> tuple[float, float]:
         rival = RIVALS.get("fisher" if self.options.planner == GYRATION else self.options.planner)
         if rival is not None:
             return rival(foreseen(task.problem, measured, belief), belief, here, rng)
-        begins = here == HOME_XY and not measured and not task.stretches
+        begins = here == HOME_XY and not measured and not task.stretches and not avoid
         if begins and self.first is not None:
             return self.first
-        decision = decide(task, belief, measured, here)
+        decision = decide(task, belief, measured, here, avoid)
         place = decision.x, decision.y
         if begins:
             self.first = place
@@ -328,8 +335,8 @@ class FieldStudy:
 
     def measured(
         self, field: Field, here: tuple[float, float], number: int, plan: TurnPlan
-    ) -> tuple[BearingMeasured | None, float, int]:
-        """(the bearing, degrees turned, looks) of one sweep. here: m ENU. number: of all sweeps of the mission."""
+    ) -> tuple[BearingMeasured | SweepRejected, float, int]:
+        """(what came of it, degrees turned, looks) of one sweep. here: m ENU. number: of all sweeps of the mission."""
         offset = self.pattern.offset_to_nose_deg
         start = None if plan.begin_deg is None else plan.begin_deg - offset
         whole = field.sweep(*here, number, self.options.turn_rate_deg_s, start)
@@ -353,7 +360,7 @@ class FieldStudy:
         )
         duration_s = turned / self.options.turn_rate_deg_s + len(steps) * LOOK_S + SETTLE_S
         fact = sweep_fact(taken, self.spec.sensor, sweep, reading, duration_s)
-        return self._widened(fact) if isinstance(fact, BearingMeasured) else None, turned, 1 + len(steps)
+        return self._widened(fact) if isinstance(fact, BearingMeasured) else fact, turned, 1 + len(steps)
 
     def _widened(self, fact: BearingMeasured) -> BearingMeasured:
         """As the belief is to read it."""

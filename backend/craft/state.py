@@ -51,6 +51,7 @@ from backend.reasons.flight import FailsafeFlies, Ordered
 from backend.search.state import OpenAlert
 from backend.spec import Place
 from hardware.authority import NOBODY, Authority
+from hardware.reasons.sweep import UnlikeAntenna
 
 AUTOMATIC: frozenset[Phase] = frozenset({"taking_off", "planning", "waiting", "flying", "measuring"})
 ORDERED_BEFORE = FailsafeFlies("ordered_before")
@@ -64,13 +65,13 @@ class CraftState:
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. reached: the craft
     is there, and whether it turns there is not decided. attempt: turns begun at the place. in_vain: those of them that
     ended without a bearing; one that a hold or a pilot broke off is none of them. maximum_retakes: of one sweep, from
-    the specification. avoid: places vetoed or without a usable sweep since the last bearing, or since the search area
-    changed. refused: places that the autopilot would not fly to, since the search area changed;
-    refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its way home. ladder: of the
-    hold, return or landing that was ordered last; None once something else has come of it. counting_down: it returns
-    soon because its battery runs low; countdown_stopped: somebody has stopped that, which they may once a flight.
-    antenna: that it has flown with; None: nobody kept it.
-    nets_wait: the autopilot's own fence is not known to be that of the search area.
+    the specification (see `retakes`). has_bearing: it has taken one. avoid: places vetoed or without a usable sweep
+    since the last bearing, or since the search area changed. refused: places that the autopilot would not fly to, since
+    the search area changed; refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its
+    way home. ladder: of the hold, return or landing that was ordered last; None once something else has come of it.
+    counting_down: it returns soon because its battery runs low; countdown_stopped: somebody has stopped that, which
+    they may once a flight. antenna: that it has flown with; None: nobody kept it. nets_wait: the autopilot's own fence
+    is not known to be that of the search area.
     """
 
     craft_id: str
@@ -80,6 +81,7 @@ class CraftState:
     searching: bool = False
     automatic: bool = True
     maximum_retakes: int = 2
+    has_bearing: bool = False
     took_off: bool = False
     chosen: PlanChosen | None = None
     accepted: bool = False
@@ -222,21 +224,30 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             return replace(state, accepted=True, reached=False)
         case SweepStarted(attempt=attempt):
             return replace(state, attempt=attempt, reached=False)
-        case SweepRejected(attempt=attempt, place=place) if _ours(state, event):
+        case SweepRejected(attempt=attempt, place=place, reason=reason) if _ours(state, event):
             if state.chosen is None:  # the same turn heard another emitter: this one is not to be sought here again
                 return replace(state, avoid=(*state.avoid, place))
             in_vain = state.in_vain | {attempt}  # one turn is rejected for each emitter that it did not hear
-            if len(in_vain) <= state.maximum_retakes:
+            if len(in_vain) <= retakes(state.maximum_retakes, state.has_bearing, reason):
                 return replace(state, in_vain=in_vain)
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
-            return replace(state, chosen=None, accepted=False, avoid=())
+            return replace(state, chosen=None, accepted=False, avoid=(), has_bearing=True)
         case BearingExcluded() | BearingIncluded() | SourceMuteChanged() | PrioritiesChanged() if (
             state.phase == "waiting"
         ):
             return replace(state, chosen=None)
         case _:
             return state
+
+
+def retakes(most: int, has_bearing: bool, reason: Reason) -> int:
+    """How often a turn that was rejected for this is made again at its place, at most `most` times.
+
+    Before there is a bearing nothing keeps a place from lying above the emitter. A sweep from there is unlike the
+    antenna, and the next one that is not points past it: the place is left at once (decision 70).
+    """
+    return 0 if isinstance(reason, UnlikeAntenna) and not has_bearing else most
 
 
 def _ours(state: CraftState, event: SweepRejected | BearingMeasured) -> bool:

@@ -19,6 +19,7 @@ from typing import get_args
 import numpy as np
 
 from backend.cli.field_missions import OUTLIER_DEG, FieldOptions, FieldStudy
+from backend.events import BearingMeasured
 from backend.search.sector import whole_turn
 from backend.simulation.field_world import HEIGHT_M, Antenna, Field
 from hardware.sim.antenna import TabulatedAntenna
@@ -81,8 +82,8 @@ def sweeps(antenna: Antenna, fields: int, seed: int) -> list[Heard]:
             towards, away = rng.uniform(-math.pi, math.pi), rng.uniform(*AWAY_M)
             here = (field.truth[0] + away * math.cos(towards), field.truth[1] + away * math.sin(towards))
             fact, _, _ = study.measured(field, here, place, whole_turn("first"))
-            off = None if fact is None else study.off_deg(field, fact)
-            if fact is not None and off is not None:
+            off = study.off_deg(field, fact) if isinstance(fact, BearingMeasured) else None
+            if isinstance(fact, BearingMeasured) and off is not None:
                 sigma = math.sqrt(fact.sigma_deg**2 - fact.heading_sigma_deg**2)
                 heard.append(Heard(strongest_echo_db(field, *here), off, sigma))
         print(f"{antenna}: field {number + 1} of {fields}", file=sys.stderr, flush=True)

@@ -17,6 +17,7 @@ from backend.cli.field_missions import AS_FLOWN, HOME, LOOK_S, SETTLE_S, FieldOp
 from backend.cli.field_study import FieldWays
 from backend.cli.field_summary import summary
 from backend.cli.main import app
+from backend.events import BearingMeasured
 from backend.search.sector import planned_turn, whole_turn
 from backend.simulation.field_world import drawn_field
 from hardware.sim.propagation import Fading
@@ -61,14 +62,14 @@ def test_a_sector_is_turned_as_far_as_the_machine_says_and_takes_that_long():
     towards = np.exp(-0.5 * (off / 10.0) ** 2)
     plan = planned_turn(towards / towards.sum())
     found, turned_deg, looks = study.measured(field, (0.0, 0.0), 0, plan)
-    assert found is not None
+    assert isinstance(found, BearingMeasured)
     assert found.turn is not None
     assert plan.width_deg <= turned_deg <= 360.0
     assert found.turn.turned_deg == turned_deg
     assert looks == 1 + len(found.turn.went_on_because)
     assert found.measurement_time_s == pytest.approx(turned_deg / 30.0 + (looks - 1) * LOOK_S + SETTLE_S)
     whole, whole_deg, once = study.measured(field, (0.0, 0.0), 0, whole_turn("first"))
-    assert whole is not None
+    assert isinstance(whole, BearingMeasured)
     assert (whole_deg, once) == (360.0, 1)
 
 

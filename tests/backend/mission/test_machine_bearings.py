@@ -25,6 +25,9 @@ from backend.reasons import refusals
 from backend.search.effects import Record, UpdateBelief
 from backend.search.inputs import BearingsArrived
 from backend.spec import FIRST_EMITTER
+from hardware.reasons.sweep import UnlikeAntenna
+
+UNLIKE = UnlikeAntenna(0.5, 0.7)
 
 
 @pytest.mark.parametrize("source", [PERSON, IMPORT])
@@ -95,6 +98,25 @@ def test_after_a_silent_place_the_next_is_planned_with_what_the_silence_tells() 
     (planned,) = of_craft(walk.believe())
     assert isinstance(planned, effects.PlanNext)
     assert planned.avoid == (walk.craft.avoid[-1],)
+    assert fold(walk.recorded) == walk.state
+
+
+def test_before_there_is_a_bearing_a_place_that_may_lie_above_the_emitter_is_left_at_once() -> None:
+    """Where a sweep is unlike the antenna; one of which nothing was heard is taken again, as any later one is."""
+    walk = Walk().to("measuring")
+    here = walk.craft.chosen
+    assert here is not None
+    walk.to_craft(inputs.SweepTaken((rejected(1).model_copy(update={"reason": UNLIKE}),)))
+    assert (walk.craft.phase, walk.craft.avoid) == ("planning", (here.place,))
+    assert walk.craft.chosen is None
+    walk.to_craft(inputs.Planned(plan(2)))
+    walk.arrive()
+    walk.to_craft(inputs.SweepTaken((bearing(2),)))
+    walk.believe()
+    walk.to_craft(inputs.Planned(plan(3)))
+    walk.arrive()
+    walk.to_craft(inputs.SweepTaken((rejected(1, 3).model_copy(update={"reason": UNLIKE}),)))
+    assert walk.craft.phase == "measuring", "what is known by now keeps places away from it"
     assert fold(walk.recorded) == walk.state
 
 
