@@ -25,8 +25,9 @@ from planner.types import Bearing, FloatArray
 
 FOUND_SIGMAS = np.linspace(-2.5, 2.5, 9)
 """Where an emitter is looked for about the place at which it was found, in standard deviations of that place."""
-SURPRISE = 0.02
-"""Share of the prior that knows nothing, whatever was learned."""
+SURPRISE = 0.02 / 3.0
+"""Share of the prior that knows nothing in each of the three, whatever was learned: in one flight of fifty something is
+otherwise."""
 
 
 def flight_evidence(belief: JointBelief, source: str) -> FloatArray:
