@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from threading import RLock
+from typing import Any
 
 import numpy as np
 from shapely.geometry.base import BaseGeometry
@@ -40,8 +41,9 @@ from planner.types import Bearing, InconsistentBearings, LocalizationRule, Plann
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
 
-FOLDS_KEPT = 64
-"""Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
+FOLDS_KEPT, CELLS_KEPT = 64, 4_000_000
+"""Beliefs that the next bearing, and each question about a place, goes on from, and cells of all of them, of 16 bytes
+each: most have some ten thousand, those of sharp bearings in a large area a quarter of a million."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,8 +152,7 @@ class Localization:
         found = self._heard.get((bearings, self.stretches))
         if found is None:
             found = heard_on_the_way(folded, self.stretches)
-            if len(self._heard) >= FOLDS_KEPT:
-                self._heard.clear()
+            _make_room(self._heard)
             self._heard[bearings, self.stretches] = found
         return found
 
@@ -165,8 +166,7 @@ class Localization:
             if found is None:
                 before = self._folded(bearings[:-1])
                 found = self._with(before, bearings)
-                if len(self._folds) >= FOLDS_KEPT:
-                    self._folds.clear()
+                _make_room(self._folds)
                 self._folds[bearings] = found
             return found
 
@@ -236,6 +236,11 @@ class Localization:
     def place(self, x: float, y: float) -> Place:
         """(x, y) in m ENU to degrees."""
         return self.frame.to_geo(x, y)
+
+
+def _make_room(kept: dict[Any, GridBelief]) -> None:
+    if len(kept) >= FOLDS_KEPT or sum(belief.density.size for belief in kept.values()) >= CELLS_KEPT:
+        kept.clear()
 
 
 def localization(

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from backend.events import BearingMeasured, Peak
 from backend.reasons.search import HeadingsAskew
+from backend.search import localization as module
 from backend.search.errors import MissionInputError
 from backend.search.localization import Localization, localization
 from backend.search.problem import KEEP_OFF_M
@@ -226,3 +227,14 @@ def test_a_belief_that_goes_on_from_the_one_before_is_the_same_bit_for_bit() -> 
     assert fact == fresh.belief_fact(measured)[0]
     without = [b for b in measured if b is not measured[2]]
     assert grown.belief_fact(without)[0] == fresh.belief_fact(without)[0] != fact
+
+
+def test_beliefs_that_are_kept_take_no_more_room_than_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And are made again where they were given up."""
+    seen = [towards(x, y, (150.0, 60.0), sigma=6.0) for x, y in ((90, -40), (210, -40), (150, -45), (60, 60))]
+    _, roomy = task(0.1).belief_fact(seen)
+    monkeypatch.setattr(module, "CELLS_KEPT", 1)
+    narrow = task(0.1)
+    _, again = narrow.belief_fact(seen)
+    assert len(narrow._folds) == 1  # pyright: ignore[reportPrivateUsage]
+    assert np.array_equal(again.density, roomy.density)
