@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any, get_args
 
@@ -25,7 +25,7 @@ from hardware.reasons.table import FileUnreadable
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
 from planner.belief.joint import JointBelief, corrected, joint_prior, update_joint
-from planner.belief.source_errors import SourceErrors
+from planner.belief.source_errors import ErrorPrior, SourceErrors
 from planner.belief.verdict import points_at, stated, verdict
 from planner.geometry import convex_hull
 from planner.options import Estimator
@@ -43,6 +43,8 @@ from planner.types import (
 SHORTEST_RANGE_M = 1000.0
 RANGE_BY_SPREAD = 3.0
 _DISC_CORNERS = 48
+RIGHT_RAD = 1e-6
+"""Standard deviation of a compass that is right."""
 ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
 USUAL_OUTLIERS = 0.1
 """As a mission expects unless told otherwise."""
@@ -231,7 +233,7 @@ def _localize(
         sigma = math.radians(_own_sigma_deg(b) if joint else b.sigma_deg)
         bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), sigma, outliers))
     problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0), estimator=estimator)
-    belief = _fold_joint(problem, bearings, outliers) if joint else _fold(problem, bearings)
+    belief = _fold_joint(problem, bearings, outliers) if joint else _fold(problem, bearings, outliers)
     judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
     answer: dict[str, Any] = {
         "estimate": None,
@@ -264,18 +266,32 @@ def _own_sigma_deg(bearing: RecordedBearing) -> float:
     return math.sqrt(bearing.sigma_deg**2 - compass_share_deg(bearing.sigma_deg) ** 2)
 
 
-def _fold(problem: Problem, bearings: list[Bearing]) -> GridBelief | None:
+def _fold(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
+    """With outliers as a joint belief that knows everything else, whose cells are as fine as the bearings cross."""
+    if outliers > 0.0:
+        known = _with_all(joint_prior(problem, otherwise=_known(outliers)), bearings)
+        return GridBelief(**{one.name: getattr(known, one.name) for one in fields(GridBelief)})
     try:
         return fold(problem, bearings)
     except InconsistentBearings:
         return None
 
 
-def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
-    """None when hardly two of several bearings agree on a place: then all of them may be outliers."""
-    belief = joint_prior(problem, otherwise=unknown_errors(outliers))
+def _known(outliers: float) -> ErrorPrior:
+    """A compass that is right, sigmas that are true, and this rate of outliers."""
+    one = np.ones(1)
+    return ErrorPrior(RIGHT_RAD * one, one, one, one, outliers * one, one)
+
+
+def _with_all(belief: JointBelief, bearings: list[Bearing]) -> JointBelief:
     for bearing in bearings:
         belief = update_joint(belief, bearing)
+    return belief
+
+
+def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
+    """None when hardly two of several bearings agree on a place: then all of them may be outliers."""
+    belief = _with_all(joint_prior(problem, otherwise=unknown_errors(outliers)), bearings)
     found = estimate(belief, problem.estimator)
     agreeing = sum(points_at(bearing, found.x, found.y) for bearing in corrected(belief, bearings))
     return None if agreeing < min(2, len(bearings)) else belief

@@ -165,3 +165,15 @@ def test_one_bearing_is_told_in_the_singular_and_turned_by_no_minus_zero(tmp_pat
     text = CliRunner().invoke(APP, [str(written(tmp_path, [(0.0, 0.0, 40.0)]))]).stdout
     assert "from 1 bearing\n" in text
     assert "-0 " not in text
+
+
+@pytest.mark.parametrize("options", [(), ("--errors", "independent"), ("--errors", "independent", "--outliers", "0.1")])
+def test_sharp_bearings_from_near_need_no_range(tmp_path: Path, options: Sequence[str]) -> None:
+    """In 2 km, which are taken where nobody says how far it is heard, 483 m were stated; 672 with outliers alone."""
+    places = [(60.0, 0.0), (0.0, 60.0), (-60.0, 0.0), (0.0, -60.0), (42.0, 42.0)]
+    off = (0.5, -1.0, 1.0, 1.0, -0.5)
+    rows = [(x, y, (bearing_to(x, y, 0.0, 0.0) + error) % 360.0) for (x, y), error in zip(places, off, strict=True)]
+    answer = json.loads(CliRunner().invoke(APP, [str(written(tmp_path, rows, 2.0)), "--json", *options]).stdout)
+    assert answer["localized"]
+    assert answer["expected_rmse_m"] < 4.0
+    assert math.hypot(*FRAME.to_enu(Place(answer["estimate"]["lat"], answer["estimate"]["lon"]))) < 5.0
