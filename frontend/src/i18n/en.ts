@@ -518,7 +518,6 @@ export const en = {
   "instruments.heading": "Heading (true)",
   "instruments.power": "Received power",
   "instruments.settling": "Left out while changing channels",
-  "instruments.lost": "Samples the receiver loses",
   "instruments.viewers": "Consoles watching",
   "instruments.database": "Journal",
   "instruments.database.ok": "keeping up",

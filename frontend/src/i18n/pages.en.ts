@@ -357,6 +357,7 @@ export const pagesEn = {
   "edit.turnRate": "Turn rate",
   "edit.quality": "Lowest quality of a sweep",
   "edit.retakes": "Repeat a bad sweep at most",
+  "instruments.lost": "Samples the receiver loses",
   "edit.sectorTurns": "Turn only as far as the bearing needs",
   "edit.listenOnTheWay": "Listen between places, too",
   "edit.swingOnTheWay": "Swing the nose while listening",

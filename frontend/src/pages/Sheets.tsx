@@ -1,10 +1,12 @@
 // Sheets over the page: settings, keys, tour.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { type MessageKey, t } from "../i18n";
+import { type Language, type MessageKey, t } from "../i18n";
 import { Instruments } from "../panels/Instruments";
 import { type Overlay, overlay } from "../state/overlay";
-import { CHOICES, change, type Settings, settings } from "../state/settings";
+import { change, type Settings, settings } from "../state/settings";
+import type { CoordinateFormat } from "../units/coordinates";
+import type { UnitSystem } from "../units/quantities";
 import { Tour } from "./Tour";
 
 const close = () => {
@@ -36,20 +38,33 @@ function Sheet({ title, testId, children }: { title: string; testId: string; chi
   );
 }
 
-function Pick({ name }: { name: Exclude<keyof typeof CHOICES, "scale"> }) {
+interface Option<T> {
+  value: T;
+  label: MessageKey;
+}
+
+function Pick<K extends keyof Settings>({
+  name,
+  label,
+  options,
+}: {
+  name: K;
+  label: MessageKey;
+  options: readonly Option<Settings[K] & string>[];
+}) {
   const id = `setting-${name}`;
   return (
     <div class="field">
-      <label for={id}>{t(`settings.${name}`)}</label>
+      <label for={id}>{t(label)}</label>
       <select
         id={id}
         data-testid={id}
-        value={settings.value[name]}
-        onChange={(e) => change(name, e.currentTarget.value as Settings[typeof name])}
+        value={String(settings.value[name])}
+        onChange={(e) => change(name, e.currentTarget.value as Settings[K])}
       >
-        {CHOICES[name].map((value) => (
-          <option value={value} key={value}>
-            {t(`settings.${name}.${value}` as MessageKey)}
+        {options.map((o) => (
+          <option value={o.value} key={o.value}>
+            {t(o.label)}
           </option>
         ))}
       </select>
@@ -66,27 +81,43 @@ function Toggle({ name, label }: { name: "tones" | "speech" | "lite"; label: Mes
   );
 }
 
+const THEMES: Option<Settings["theme"]>[] = [
+  { value: "outdoor", label: "settings.theme.outdoor" },
+  { value: "indoor", label: "settings.theme.indoor" },
+];
+const UNITS: Option<UnitSystem>[] = [
+  { value: "metric", label: "settings.units.metric" },
+  { value: "imperial", label: "settings.units.imperial" },
+];
+const FORMATS: Option<CoordinateFormat>[] = [
+  { value: "dd", label: "settings.coordinates.dd" },
+  { value: "dms", label: "settings.coordinates.dms" },
+  { value: "utm", label: "settings.coordinates.utm" },
+  { value: "mgrs", label: "settings.coordinates.mgrs" },
+];
+const LANGUAGES: Option<Language>[] = [
+  { value: "en", label: "settings.language.en" },
+  { value: "de", label: "settings.language.de" },
+];
+const SCALES = [0.85, 1, 1.15, 1.3];
+
 function SettingsSheet() {
   return (
     <Sheet title={t("settings.title")} testId="settings">
-      <Pick name="theme" />
+      <Pick name="theme" label="settings.theme" options={THEMES} />
       <div class="field">
         <label for="setting-scale">{t("settings.scale")}</label>
-        <select
-          id="setting-scale"
-          value={String(settings.value.scale)}
-          onChange={(e) => change("scale", Number(e.currentTarget.value) as Settings["scale"])}
-        >
-          {CHOICES.scale.map((scale) => (
+        <select id="setting-scale" value={String(settings.value.scale)} onChange={(e) => change("scale", Number(e.currentTarget.value))}>
+          {SCALES.map((scale) => (
             <option value={String(scale)} key={scale}>
               {Math.round(scale * 100)} %
             </option>
           ))}
         </select>
       </div>
-      <Pick name="units" />
-      <Pick name="coordinates" />
-      <Pick name="language" />
+      <Pick name="units" label="settings.units" options={UNITS} />
+      <Pick name="coordinates" label="settings.coordinates" options={FORMATS} />
+      <Pick name="language" label="settings.language" options={LANGUAGES} />
       <Toggle name="tones" label="settings.tones" />
       <Toggle name="speech" label="settings.speech" />
       <Toggle name="lite" label="settings.lite" />

@@ -10,7 +10,7 @@ import { craftStatus, telemetry } from "../state/heard";
 import { reviewTimeMs } from "../state/moment";
 import { shareWithin } from "../state/nearness";
 import { notYet } from "../state/notYet";
-import { CHOICES, change, settings } from "../state/settings";
+import { change, settings } from "../state/settings";
 import { mission, shownTimeMs } from "../state/shown";
 import { supposedHere } from "../state/supposed";
 import { remainingTime } from "../state/timeLeft";
@@ -22,6 +22,8 @@ import { Claim } from "./Claim";
 import { copyText } from "./clipboard";
 import { Icon } from "./Icon";
 import { WhichShown } from "./WhichShown";
+
+const FORMATS: readonly CoordinateFormat[] = ["dd", "dms", "utm", "mgrs"];
 
 /** How far the region reaches and which way, as the report says it. */
 function reachWords(region: Area): string {
@@ -43,7 +45,7 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
         value={format}
         onChange={(e) => change("coordinates", e.currentTarget.value as CoordinateFormat)}
       >
-        {CHOICES.coordinates.map((f) => (
+        {FORMATS.map((f) => (
           <option value={f} key={f}>
             {f.toUpperCase()}
           </option>

@@ -7,7 +7,7 @@ import { coordinateFormat, unitSystem } from "../units/shown";
 
 export interface Settings {
   theme: "outdoor" | "indoor";
-  scale: 0.85 | 1 | 1.15 | 1.3;
+  scale: number;
   units: UnitSystem;
   coordinates: CoordinateFormat;
   language: Language;
@@ -31,15 +31,6 @@ export const defaultSettings: Settings = {
   tourSeen: false,
 };
 
-/** What each may be; the others are on or off. */
-export const CHOICES = {
-  theme: ["outdoor", "indoor"],
-  scale: [0.85, 1, 1.15, 1.3],
-  units: ["metric", "imperial"],
-  coordinates: ["dd", "dms", "utm", "mgrs"],
-  language: ["en", "de"],
-} as const satisfies { [K in keyof Settings]?: readonly Settings[K][] };
-
 /** Unreadable or foreign entries are ignored: the defaults hold for them. */
 export function readSettings(stored: string | null): Settings {
   if (!stored) return defaultSettings;
@@ -51,12 +42,9 @@ export function readSettings(stored: string | null): Settings {
   }
   if (typeof parsed !== "object" || parsed === null) return defaultSettings;
   const given = parsed as Record<string, unknown>;
-  const choices: Record<string, readonly unknown[]> = CHOICES;
-  const known = Object.entries(defaultSettings).map(([key, value]) => [
-    key,
-    (choices[key] ?? [true, false]).includes(given[key]) ? given[key] : value,
-  ]);
-  return Object.fromEntries(known) as Settings;
+  const known = Object.entries(defaultSettings).map(([key, value]) => [key, typeof given[key] === typeof value ? given[key] : value]);
+  const read = Object.fromEntries(known) as Settings;
+  return { ...read, theme: read.theme === "indoor" ? "indoor" : "outdoor" };
 }
 
 export const settings = signal<Settings>(readSettings(localStorage.getItem(KEY)));
