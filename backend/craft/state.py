@@ -244,8 +244,8 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
 def retakes(most: int, has_bearing: bool, reason: Reason) -> int:
     """How often a turn that was rejected for this is made again at its place, at most `most` times.
 
-    Before there is a bearing nothing keeps a place from lying above the emitter. A sweep from there is unlike the
-    antenna, and the next one that is not points past it: the place is left at once (decision 70).
+    Before the first bearing a place may happen to lie right above the emitter. Most sweeps from there do not look like
+    the antenna, and a repeated one that does points away from the emitter: the place is left at once (decision 70).
     """
     return 0 if isinstance(reason, UnlikeAntenna) and not has_bearing else most
 

@@ -10,7 +10,7 @@ from hardware.ports import LOST_PERCENT
 from hardware.reasons.receiver import SamplesLost
 
 ALARMING_PERCENT = 5.0
-"""From here on an operator is told in flight, until it is LOST_PERCENT or less."""
+"""A loss above this raises an alert in flight, which stays until the loss is down to LOST_PERCENT."""
 
 
 @dataclass(slots=True)
@@ -20,8 +20,8 @@ class LossWatch:
     _losing: bool = False
 
     def look(self, lost_percent: float, trouble: Reason | None) -> list[inputs.CraftInput]:
-        """That it loses samples, and that it does so no longer, each once. Of one in trouble that alone is told; what
-        it loses is told again after it."""
+        """One input when it begins to lose samples, and one when it stops. None while the receiver is in trouble: the
+        trouble has an alert of its own, and a loss that goes on afterwards is reported anew."""
         if trouble is not None:
             self._losing = False
             return []
