@@ -35,10 +35,11 @@ _GOOD_FIXES = frozenset({"3D", "DGPS", "RTK float", "RTK fixed", "PPP"})
 
 @dataclass(frozen=True, slots=True)
 class Readiness:
-    """prearm_ok: the autopilot would arm, None: it does not say. in_our_mode: in a mode that we would arm in; PX4
-    answers for the present one only. said: its own words lately."""
+    """prearm_ok: the autopilot would arm, None: it does not say. heard: SYS_STATUS came, which says so or does not.
+    in_our_mode: in a mode that we would arm in; PX4 answers for the present one only. said: its own words lately."""
 
     prearm_ok: bool | None
+    heard: bool = True
     in_our_mode: bool = True
     said: str = ""
 
@@ -97,6 +98,8 @@ def _battery(telemetry: Telemetry, minimum_percent: float) -> PreflightCheck:
 def _ready_to_arm(telemetry: Telemetry, readiness: Readiness) -> PreflightCheck:
     if telemetry.in_air:
         return PreflightCheck("ready_to_arm", True, ArmingChecked("in_the_air"))
+    if not readiness.heard:
+        return PreflightCheck("ready_to_arm", False, NeverReported("own_checks"))
     if readiness.prearm_ok is False:
         state = "not_ready" if readiness.in_our_mode else "not_in_this_mode"
         reason = ArmingChecked(state, readiness.said)

@@ -75,7 +75,7 @@ class MavsdkVehicle:
         prearm_ok = dialect.prearm_ok(snapshot.prearm_present, snapshot.prearm_healthy)
         in_our_mode = dialect.prearm_has_present_bit or snapshot.custom_mode in dialect.before_take_off.modes
         said = " / ".join(monitor.said_since(heard.at_s - SAID_LATELY_S)[-MOST_SAID:])
-        readiness = Readiness(prearm_ok, in_our_mode, said)
+        readiness = Readiness(prearm_ok, snapshot.prearm_healthy is not None, in_our_mode, said)
         checks = telemetry_checks(heard, readiness, monitor.remote_id, self._minimum_battery_percent)
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
         charge_known = heard.battery_percent is not None

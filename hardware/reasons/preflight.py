@@ -83,15 +83,16 @@ class RemoteIdRefuses:
 
 @dataclass(frozen=True, slots=True)
 class NeverReported:
-    what: Literal["gps", "position", "heading", "battery", "home"]
+    what: Literal["gps", "position", "heading", "battery", "home", "own_checks"]
     code: Literal["never_reported"] = "never_reported"
 
     english: ClassVar[Words] = Words(
         "The autopilot has not reported {what?gps=its GPS|position=its position|heading=its heading"
-        "|battery=the battery's charge|home=its home}.",
+        "|battery=the battery's charge|home=its home|own_checks=how its own checks stand}.",
         "{what?gps=Check that it has a GPS receiver|position=Wait until the autopilot knows where it is"
         "|heading=Check the compass: bearings need the vehicle's heading|battery=Set up the battery monitor"
-        "|home=Wait until the autopilot has set its home (it needs GPS)}.",
+        "|home=Wait until the autopilot has set its home (it needs GPS)"
+        "|own_checks=Wait until it does, and check that it sends SYS_STATUS}.",
     )
 
 

@@ -837,9 +837,9 @@ export const reasonsEn: ReasonTable = {
     remedy: "Mend what it says: often the operator's id or the operator's place is missing.",
   },
   never_reported: {
-    text: "The autopilot has not reported {what?gps=its GPS|position=its position|heading=its heading|battery=the battery's charge|home=its home}.",
+    text: "The autopilot has not reported {what?gps=its GPS|position=its position|heading=its heading|battery=the battery's charge|home=its home|own_checks=how its own checks stand}.",
     remedy:
-      "{what?gps=Check that it has a GPS receiver|position=Wait until the autopilot knows where it is|heading=Check the compass: bearings need the vehicle's heading|battery=Set up the battery monitor|home=Wait until the autopilot has set its home (it needs GPS)}.",
+      "{what?gps=Check that it has a GPS receiver|position=Wait until the autopilot knows where it is|heading=Check the compass: bearings need the vehicle's heading|battery=Set up the battery monitor|home=Wait until the autopilot has set its home (it needs GPS)|own_checks=Wait until it does, and check that it sends SYS_STATUS}.",
   },
   report_age: {
     text: "The {what?position=position|heading=heading} is {age_s:1} old.",

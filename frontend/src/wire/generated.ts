@@ -5332,7 +5332,7 @@ export interface components {
         };
         NeverReported: {
             /** @enum {string} */
-            what: "gps" | "position" | "heading" | "battery" | "home";
+            what: "gps" | "position" | "heading" | "battery" | "home" | "own_checks";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

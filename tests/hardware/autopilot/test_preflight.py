@@ -16,6 +16,7 @@ from hardware.reasons.preflight import (
     FailsafeParameter,
     FailsafeUnread,
     FailsafeWithoutThreshold,
+    NeverReported,
     RemoteIdChecked,
     RemoteIdRefuses,
     SatellitesUnknown,
@@ -66,6 +67,17 @@ def refused(telemetry: Telemetry, prearm_ok: bool | None = True, remote_id: Remo
 def test_a_ready_vehicle_passes() -> None:
     assert refused(READY) == []
     assert refused(READY, prearm_ok=None) == []
+
+
+def test_an_autopilot_that_has_not_said_how_its_own_checks_stand_is_waited_for() -> None:
+    """The first SYS_STATUS may come after the first position: until then nobody knows, and a start is refused."""
+    unheard = telemetry_checks(READY, Readiness(None, heard=False), NO_REMOTE_ID, 30.0)
+
+    assert [(one.name, one.reason) for one in unheard if not one.ok and one.blocking] == [
+        ("ready_to_arm", NeverReported("own_checks"))
+    ]
+    flying = telemetry_checks(replace(READY, in_air=True), Readiness(None, heard=False), NO_REMOTE_ID, 30.0)
+    assert all(one.ok for one in flying if one.name == "ready_to_arm")
 
 
 @pytest.mark.parametrize(

@@ -42,9 +42,9 @@ export const preflight = {
     remedy: "Beheben, was er sagt: Oft fehlt die Kennung oder der Ort des Betreibers.",
   },
   never_reported: {
-    text: "Der Autopilot hat {what?gps=sein GPS|position=seine Position|heading=seine Richtung|battery=den Ladestand des Akkus|home=seinen Startplatz} nicht gemeldet.",
+    text: "Der Autopilot hat {what?gps=sein GPS|position=seine Position|heading=seine Richtung|battery=den Ladestand des Akkus|home=seinen Startplatz|own_checks=den Stand seiner eigenen Prüfungen} nicht gemeldet.",
     remedy:
-      "{what?gps=Prüfen, ob er einen GPS-Empfänger hat|position=Warten, bis der Autopilot weiß, wo er ist|heading=Den Kompass prüfen: Peilungen brauchen die Richtung des Fluggeräts|battery=Die Akkuüberwachung einrichten|home=Warten, bis der Autopilot seinen Startplatz gesetzt hat (er braucht GPS)}.",
+      "{what?gps=Prüfen, ob er einen GPS-Empfänger hat|position=Warten, bis der Autopilot weiß, wo er ist|heading=Den Kompass prüfen: Peilungen brauchen die Richtung des Fluggeräts|battery=Die Akkuüberwachung einrichten|home=Warten, bis der Autopilot seinen Startplatz gesetzt hat (er braucht GPS)|own_checks=Warten, bis er es tut, und prüfen, ob er SYS_STATUS sendet}.",
   },
   report_age: {
     text: "Die {what?position=Position|heading=Richtung} ist {age_s:1} alt.",
