@@ -46,6 +46,8 @@ ROWS: Mapping[str, FieldOptions] = {
     "random_walk": FieldOptions("random_walk"),
     "gyration": FieldOptions("gyration"),
     "taught": FieldOptions(flights=30),
+    "taught_sector": FieldOptions(turns="sector", flights=30),
+    "taught_swings": FieldOptions(turns="sector", listens="way_swinging", flights=30),
 }
 """taught: after thirty flights of the craft, which its bearings are learned from. wedge: each bearing by itself, as
 before errors were estimated with the place; widened: its sigmas multiplied by what `WIDENINGS` has for the setting.
