@@ -176,7 +176,8 @@ class Problem:
     rollouts. sector_turns: None: a measurement takes as long everywhere. next_source: who takes the bearings to come;
     None: who took those that came. ways: of somebody on the ground, with the only places to measure at; None: straight
     flights, around what is not flown over. crossing: what the next bearing must cross, where a claim waits for that.
-    legs: None: a bearing is a turn at its place.
+    legs: None: a bearing is a turn at its place. turned_at: m ENU, where bearings were taken: one from
+    nearby shares their echoes.
     """
 
     area: Region
@@ -197,6 +198,7 @@ class Problem:
     ways: Ways | None = None
     crossing: Crossing | None = None
     legs: Legs | None = None
+    turned_at: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

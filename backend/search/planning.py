@@ -145,7 +145,14 @@ def to_plan(task: Localization, measured: Sequence[BearingMeasured], belief: Gri
     """What is foreseen, and what the next bearing must cross where a claim waits for nothing but that."""
     problem = foreseen_for(task, measured, belief)
     crossing = missing_crossing(problem, task.rule, task.planner_bearings(measured), belief)
-    return replace(problem, crossing=crossing)
+    return replace(problem, crossing=crossing, turned_at=turned_at(task, measured))
+
+
+def turned_at(task: Localization, measured: Sequence[BearingMeasured]) -> tuple[tuple[float, float], ...]:
+    """m ENU, where crafts have bearings from. Of none where the emitter moves: its echoes move with it."""
+    if task.moving:
+        return ()
+    return tuple(task.frame.to_enu(fact.place) for fact in measured if isinstance(fact.source, CraftSource))
 
 
 def foreseen_for(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from planner import on_the_way, sweep_likelihood
+from planner.belief.same_place import one_a_place
 from planner.belief.source_errors import Nodes
 from planner.observation import expected_bearing, wrap
 from planner.on_the_way import Stretch
@@ -62,7 +63,8 @@ SMALLEST_SIGMA = float(np.deg2rad(1.0))
 
 def sightings(bearings: Sequence[Bearing]) -> Sightings:
     """The bearings' outlier probability is not used: the source's rate stands for it. Profiles have equally many
-    directions."""
+    directions. Those from one place count as one bearing (planner.belief.same_place), so n may be fewer."""
+    bearings = one_a_place(bearings)
     peaks = [[(b.angle, 1.0), *((peak.angle, peak.weight) for peak in b.peaks)] for b in bearings]
     first = np.concatenate([[0], np.cumsum([len(some) for some in peaks])]).astype(np.int64)
     weights = [w / sum(v for _, v in some) for some in peaks for _, w in some]

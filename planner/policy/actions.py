@@ -21,6 +21,8 @@ MOST_PLACES = 20_000
 """A finer lattice is refused: no budget could tell its places apart, and no map could show them."""
 SAME_PLACE_M = 5.0
 """Nearer to a refused place than this is the same place: what stands against one stands against the other."""
+OTHER_ECHOES_M = 25.0
+"""Echoes and shadows are those of a place: a bearing from nearer to another one is off by the same."""
 
 Usable = Callable[[FloatArray], FloatArray]
 """Those of the places (n, 2), m, that may be chosen."""
@@ -68,15 +70,23 @@ def without_refused(
     """(n, 2) m: those that lie half a spacing, and at least SAME_PLACE_M, from every refused one (m ENU).
 
     While no standoff is asked for, a turn in vain may have been made above the emitter: r_min from every refused one
-    where any place is so far.
+    where any place is so far. Of what is left those that have echoes of their own, where there are any.
     """
     near = max(0.5 * (problem.action_spacing or belief.h), SAME_PLACE_M)
-    away = np.full(len(places), np.inf)
-    for place in refused:
-        away = np.minimum(away, np.hypot(*(places - np.array(place)).T))
+    away = _from_nearest(places, refused)
     if standoff_from(belief, problem) < problem.standoff and (away >= max(problem.standoff, near)).any():
         near = max(problem.standoff, near)
-    return places[away >= near]
+    left = places[away >= near]
+    away = _from_nearest(left, problem.turned_at)
+    return left[away >= min(OTHER_ECHOES_M, away.max(initial=0.0))]
+
+
+def _from_nearest(places: FloatArray, others: Sequence[tuple[float, float]]) -> FloatArray:
+    """(n,) m from each place (n, 2) to the nearest of the others, m; infinite where there are none."""
+    away = np.full(len(places), np.inf)
+    for other in others:
+        away = np.minimum(away, np.hypot(*(places - np.array(other)).T))
+    return away
 
 
 def lattice(problem: Problem) -> FloatArray:

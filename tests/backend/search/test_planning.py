@@ -19,12 +19,13 @@ from backend.search.planning import (
     in_nine_of_ten,
     next_place,
     next_place_together,
+    turned_at,
     way_to,
 )
 from backend.search.turn_schedule import turn_s
-from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon, SensorSpec
+from backend.spec import EmitterSpec, FlightSpec, MissionSpec, MovementSpec, PlannerSpec, Polygon, SensorSpec
 from hardware.readings import Place
-from planner.policy.actions import SAME_PLACE_M
+from planner.policy.actions import OTHER_ECHOES_M, SAME_PLACE_M
 
 
 def task(**more: object) -> Localization:
@@ -55,6 +56,19 @@ def test_the_next_place_is_allowed_explained_and_repeatable(method: str) -> None
         assert first.time_90_s is not None
         assert first.rollouts >= len(first.candidates) > 1
         assert sum(c.dropped_in_round is None for c in first.candidates) == 1
+
+
+def test_no_turn_is_made_where_another_heard_the_same_echoes() -> None:
+    """A craft's; what a person on the ground heard, and of an emitter that moves, is another matter."""
+    made, seen = task(), [towards(x, y, (150.0, 90.0)) for x, y in ((0.0, -20.0), (300.0, 0.0), (20.0, 170.0))]
+    belief = made.planning_belief(made.planner_bearings(seen))
+    x, y = FRAME.to_enu(next_place(made, belief, seen, (20.0, 170.0), 4, (), 1).place)
+    assert min(math.dist((x, y), FRAME.to_enu(one.place)) for one in seen) >= OTHER_ECHOES_M - 0.01
+    on_foot = [one.model_copy(update={"source": PersonSource(name="ada")}) for one in seen]
+    assert len(turned_at(made, seen)) == 3
+    assert turned_at(made, on_foot) == ()
+    moves = [EmitterSpec(emitter_id="emitter-1", movement=MovementSpec(kind="animal"))]
+    assert turned_at(task(emitters=moves), seen) == ()
 
 
 @pytest.mark.parametrize("method", ["rollout", "base_policy"])

@@ -25,10 +25,11 @@ PLACES = ((150.0, -40.0), (330.0, 60.0), (20.0, 320.0), (-30.0, 100.0))
 BIAS = np.deg2rad(8.0)
 
 
-def heard(target, rng, count, bias=BIAS, source="craft", sigma=SIGMA):
-    """Bearings of one emitter, the compass wrong by `bias` in all of them."""
+def heard(target, rng, count, bias=BIAS, source="craft", sigma=SIGMA, aside=0.0):
+    """Bearings of one emitter, the compass wrong by `bias` in all of them. aside: m, the places all moved eastward."""
     found = []
     for x, y in PLACES[:count]:
+        x += aside
         direction = np.arctan2(target[1] - y, target[0] - x)
         found.append(
             Bearing(x, y, float(wrap(direction + bias + 0.5 * sigma * rng.standard_normal())), sigma, source=source)
@@ -132,7 +133,7 @@ def test_the_compiled_evidence_by_node_is_the_plain_one(count):
             angle=float(one.angle + rng.normal(0.0, 0.3)),
             peaks=(Peak(float(rng.uniform(-3.0, 3.0)), 0.4),) if i % 3 else (),
         )
-        for i, one in enumerate((heard(TARGETS[0], rng, 4) * 3)[:count])
+        for i, one in enumerate([one for k in range(5) for one in heard(TARGETS[0], rng, 4, aside=12.0 * k)][:count])
     ]
     belief = few_cells(bearings)
     grid = common_nodes([belief], "craft")
@@ -179,7 +180,7 @@ def test_errors_that_are_out_of_question_are_not_asked_for_and_nothing_changes(m
     sigma, bias = np.deg2rad(rng.uniform(1.0, 1.5)), np.deg2rad(rng.uniform(2.0, 8.0))
     beliefs = []
     for target in (*TARGETS, (70.0, 90.0)):
-        taken = [one for _ in range(3) for one in heard(target, rng, 4, bias=bias, sigma=sigma)]
+        taken = [one for k in range(3) for one in heard(target, rng, 4, bias=bias, sigma=sigma, aside=12.0 * k)]
         if seed % 2:
             taken[2] = replace(taken[2], angle=float(wrap(taken[2].angle + 1.0)))
         beliefs.append(alone(taken))
@@ -209,7 +210,8 @@ def test_emitters_that_leave_no_value_of_the_bias_to_all_of_them_are_asked_for_e
     rng = np.random.default_rng(3)
     beliefs = []
     for target, bias_deg in zip(TARGETS, (-12.0, 0.0, 12.0), strict=True):
-        taken = heard(target, rng, 4, bias=np.deg2rad(bias_deg), sigma=np.deg2rad(2.0)) * 3
+        off, sigma = np.deg2rad(bias_deg), np.deg2rad(2.0)
+        taken = [one for k in range(3) for one in heard(target, rng, 4, bias=off, sigma=sigma, aside=12.0 * k)]
         beliefs.append(heard_on_the_way(alone(taken), heard_along((20.0, 60.0), (20.0, 180.0), target)))
     own = [belief.errors[0].nodes.bias for belief in beliefs]
     assert own[0][-1] < own[2][0], "the case would show nothing"

@@ -9,7 +9,14 @@ from refusals import refusing
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import fold, prior_belief
 from planner.geometry import contains, distance_to_convex
-from planner.policy.actions import action_space, belief_grid, constrained_actions, lattice, without_refused
+from planner.policy.actions import (
+    OTHER_ECHOES_M,
+    action_space,
+    belief_grid,
+    constrained_actions,
+    lattice,
+    without_refused,
+)
 from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
 from planner.types import Bearing, GaussianPrior, LinearMotion, Problem
 
@@ -87,6 +94,19 @@ def test_after_a_turn_in_vain_the_first_bearing_is_taken_a_standoff_away():
     assert np.hypot(*(without_refused(action_space(FIELD, belief), [vain], FIELD, belief) - vain).T).min() < 50.0
     here = np.array([[150.0, 80.0], [150.0, 62.0]])
     assert without_refused(here, [vain], FIELD, prior).tolist() == here[:1].tolist(), "where no place is so far"
+
+
+def test_a_place_shares_its_echoes_with_those_nearby():
+    """A second bearing from there is off by the same, and belief and rollouts take it for another."""
+    belief, turned_at = fold(FIELD, TWO), ((150.0, 60.0), (40.0, 20.0))
+    places = action_space(FIELD, belief)
+    left = without_refused(places, [], replace(FIELD, turned_at=turned_at), belief)
+    away = np.min([np.hypot(*(places - place).T) for place in turned_at], axis=0)
+    assert left.tolist() == places[away >= OTHER_ECHOES_M].tolist()
+    assert len(left) < len(places)
+    near = np.array([[150.0, 61.0], [150.0, 70.0], [41.0, 20.0]])
+    furthest = without_refused(near, [], replace(FIELD, turned_at=turned_at), belief)
+    assert furthest.tolist() == near[1:2].tolist(), "where all are near, the furthest"
 
 
 def test_the_standoff_shrinks_until_two_places_are_left():
