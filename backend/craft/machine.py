@@ -141,9 +141,9 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             clock_seen(step, given)
         case ReceiverLoses() | ReceiverKeepsUp():
             losses_seen(step, given)
-        case WorkVetoed(vetoes=vetoes):
+        case WorkVetoed(vetoes=vetoes, on_ground=on_ground):
             if craft.phase in AUTOMATIC:
-                refuse_flight(step, vetoes)
+                refuse_flight(step, vetoes, on_ground)
         case Broke(because=because):
             if craft.engaged and not craft.taken_over:
                 alert(step, "failure", "warning", because)

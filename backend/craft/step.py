@@ -152,6 +152,14 @@ def take_off(step: CraftStep, reason: Reason) -> None:
     step.do(TakeOff(step.search.mission.flight.altitude_relative_m))
 
 
+def take_off_again(step: CraftStep, reason: Reason) -> None:
+    """From the ground, of a search that was begun before: no checklist has asked what it would fly to."""
+    craft, altitude_m = step.craft, step.search.mission.flight.altitude_relative_m
+    step.go("taking_off", reason)
+    chosen = None if craft.chosen is None else craft.chosen.place
+    step.do(TakeOff(altitude_m, again=True, chosen=chosen, avoid=(*craft.avoid, *craft.refused)))
+
+
 def measure(step: CraftStep, reason: Reason) -> None:
     """One more attempt at the place where it is; held there while the autopilot's headings cannot be dated."""
     odd = next((raised.reason for raised in step.craft.open_alerts if raised.topic == "clock"), None)
@@ -340,9 +348,14 @@ def _topic_of(veto: Reason) -> Topic:
     return "clock" if isinstance(veto, ClockRateOdd) else "safety"
 
 
-def refuse_flight(step: CraftStep, vetoes: tuple[Reason, ...]) -> None:
-    """Safety said no: go home when the battery says so, else hold and say why."""
+def refuse_flight(step: CraftStep, vetoes: tuple[Reason, ...], on_ground: bool = False) -> None:
+    """Safety said no: go home when the battery says so, else hold and say why. What stands on the ground stays there,
+    and its search open: another battery, or another place, may mend it."""
     record_vetoes(step, vetoes)
+    if on_ground and step.craft.phase == "taking_off":
+        alert(step, "safety", "warning", vetoes[0])
+        step.go("hold", vetoes[0])
+        return
     of_battery = [isinstance(reason, BATTERY) for reason in vetoes]
     alert(step, _topic_of(vetoes[0]), "warning", vetoes[0])
     if all(of_battery):
