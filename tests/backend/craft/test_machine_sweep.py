@@ -272,7 +272,9 @@ def test_a_place_is_left_at_once_before_the_first_bearing_only_and_only_for_a_sw
             attempts = frozenset(range(1, 4))
             for attempt in attempts:
                 vain = frozenset(one for one in attempts if one < attempt)
-                turns = replace(craft, has_bearing=has_bearing, attempt=attempt, in_vain=vain)
+                before = (("b9", HOME),)
+                left_out = frozenset[str]() if has_bearing else frozenset({"b9"})
+                turns = replace(craft, taken=before, left_out=left_out, attempt=attempt, in_vain=vain)
                 swept = rejected(attempt, craft.place_number).model_copy(update={"reason": reason})
                 step = stepped(turns, search, inputs.SweepTaken((swept,)))
                 left = attempt > craft.maximum_retakes or (isinstance(reason, UnlikeAntenna) and not has_bearing)
