@@ -74,6 +74,11 @@ class CraftStep:
         """The autopilot's failsafe brings the vehicle home or down."""
         return self.craft.authority.who == "failsafe"
 
+    @property
+    def on_ground(self) -> bool:
+        """It was found there in hold, and nobody has resumed since."""
+        return any(raised.topic == "ground" for raised in self.craft.open_alerts)
+
     def do(self, effect: CraftEffect) -> None:
         """Ask for it, after what was asked for before; the state does not change."""
         self.effects.append(effect)

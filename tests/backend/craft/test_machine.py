@@ -8,6 +8,7 @@ from facts import (
     BATTERY_VETO,
     HOME,
     IMPORT,
+    LINK_LOST,
     NO_PLACE,
     NOT_YET,
     OURS,
@@ -96,6 +97,19 @@ def test_a_vehicle_that_landed_by_itself_waits_on_the_ground_and_takes_off_again
         assert not walk.topics
         walk.give(inputs.InTheAir(HOME, 40.0))
         assert walk.craft.phase == "flying"
+
+
+def test_a_search_that_waits_on_the_ground_does_not_end_because_nobody_watches() -> None:
+    """Whoever changes the battery there may close the console meanwhile."""
+    walk = craft_in("hold")
+    walk.give(inputs.Landed())
+    walk.give(inputs.LinkDown("console", LINK_LOST))
+    assert not sent(walk.give(inputs.TimerExpired("console_return")))
+    assert (walk.craft.phase, walk.craft.engaged) == ("hold", True)
+    walk.order(commands.Resume(), on_ground=True)
+    walk.give(inputs.InTheAir(HOME, 40.0))
+    walk.give(inputs.TimerExpired("console_return"))
+    assert walk.craft.phase == "returning"
 
 
 def test_what_the_battery_forbids_on_the_ground_waits_there_and_the_search_goes_on() -> None:
