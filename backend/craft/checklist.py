@@ -36,6 +36,8 @@ from hardware.reasons.receiver import SamplesLost
 from planner.types import FloatArray
 
 RECEIVER_WALL_S = 3.0
+COUNTED_S = 2.0
+"""For so long a receiver is asked what it loses: its first tenth of a second tells nothing."""
 FEWEST_TURNS = 2
 """One place tells a direction and no distance."""
 
@@ -152,14 +154,17 @@ async def _receiver(mission: MissionSpec, equipment: CraftEquipment, listening: 
 async def _wrong_with(mission: MissionSpec, equipment: CraftEquipment, channels: Sequence[Channel]) -> CheckFact | None:
     """None: every channel of these was heard, and nothing got lost."""
     trial = Listening(equipment.receiver, equipment.clock, channels, mission.timers.receiver_silent_s)
+    counted_at_s = equipment.clock.now() + COUNTED_S
     trial.start()
     try:
         unheard = [channel for channel in channels if not await _heard(trial, channel)]
         if not unheard:
+            await equipment.clock.sleep(max(counted_at_s - equipment.clock.now(), 0.0))
             return _losing(trial)
         silent = next((channel for channel in unheard if trial.last(channel.frequency_hz) is None), None)
         if silent is None:
-            return _fact("receiver", False, checks.TagUnheard(unheard[0].frequency_hz), blocking=False)
+            unheard_here = _fact("receiver", False, checks.TagUnheard(unheard[0].frequency_hz), blocking=False)
+            return _losing(trial) or unheard_here
         trouble = trial.trouble
         blocking = silent.pulses is None or trial.state == "lost"
         return _fact("receiver", False, checks.NoSamples() if trouble is None else trouble, blocking)

@@ -20,9 +20,16 @@ class CancelWork:
 
 @dataclass(frozen=True, slots=True)
 class TakeOff:
-    """In the air already: fly to the flight altitude over the place where it is."""
+    """In the air already: fly to the flight altitude over the place where it is.
+
+    again: of a search that was begun before; from the ground, the battery is asked first whether it lasts for the first
+    turn, at `chosen` or where one would be planned, none of `avoid`.
+    """
 
     altitude_relative_m: float
+    again: bool = False
+    chosen: Place | None = None
+    avoid: tuple[Place, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

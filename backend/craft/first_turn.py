@@ -2,7 +2,8 @@
 
 In flight the first place is held against the battery once it is chosen, after the climb, and one that is too far away
 brings the craft home: it took off for nothing. So the place is chosen before the start, by the same planner from the
-same knowledge, and held against the charge that the climb leaves. A climb tells which way the wind blows, along the way
+same knowledge, and held against the charge that the climb leaves; so is the next one where a search goes on from the
+ground. A climb tells which way the wind blows, along the way
 perhaps, and the flight reckons with more then: nobody on the ground knows that, so that it is a caution and no refusal.
 """
 
@@ -14,13 +15,14 @@ from itertools import pairwise, product
 
 from backend.craft.endurance import CLIMB_M_S, Endurance, in_strong_wind
 from backend.craft.safety import Limits, Situation, battery_vetoes
+from backend.events import FIRST_CRAFT
 from backend.reasons import Reason, carried, checks, safety
 from backend.search.choosing import choose_place
 from backend.search.planning import way_to
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.search.turn_schedule import turn_s
-from backend.spec import MissionSpec
+from backend.spec import MissionSpec, Place
 from planner.travel import straight_suffices
 from planner.types import PlannerError
 
@@ -39,7 +41,27 @@ class FirstTurn:
     caution: Reason | None = None
 
 
-def first_turn(task: SearchTask, search: SearchState, limits: Limits, situation: Situation, threads: int) -> FirstTurn:
+@dataclass(frozen=True, slots=True)
+class Onward:
+    """Of a search that goes on from the ground: where it is to turn next, None: not planned yet, and places that are
+    not to be chosen."""
+
+    chosen: Place | None = None
+    avoid: tuple[Place, ...] = ()
+    craft_id: str = FIRST_CRAFT
+
+
+FROM_NOTHING = Onward()
+
+
+def first_turn(
+    task: SearchTask,
+    search: SearchState,
+    limits: Limits,
+    situation: Situation,
+    threads: int,
+    onward: Onward = FROM_NOTHING,
+) -> FirstTurn:
     """Of a vehicle that stands ready. Plans where the answer depends on it, else is quick. Synchronous; a thread's."""
     telemetry = situation.telemetry
     if telemetry.battery_percent is None or telemetry.position is None:
@@ -52,8 +74,8 @@ def first_turn(task: SearchTask, search: SearchState, limits: Limits, situation:
     if straight_suffices(limits.problem) and not _short_in_wind(limits, climbed, _farthest(limits, here)):
         return FirstTurn()
     try:
-        choice = choose_place(task, search, here, 1, situation.now_s, threads)
-        points = [here, *way_to(task.first, here, limits.frame.to_enu(choice.place))]
+        place = onward.chosen or _next_place(task, search, here, situation.now_s, threads, onward)
+        points = [here, *way_to(task.first, here, limits.frame.to_enu(place))]
     except PlannerError as error:  # no place or no way: in flight there is nothing to plan, and it comes home
         return FirstTurn(carried(error.reason))
     legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
@@ -66,6 +88,14 @@ def first_turn(task: SearchTask, search: SearchState, limits: Limits, situation:
     full = takes + short.needed_percent + limits.reserve_percent <= 100.0
     kind = safety.FirstTurnBeyondCharge if full else safety.FirstTurnBeyondBattery
     return FirstTurn(kind(telemetry.battery_percent, far_m, takes, short.needed_percent, limits.reserve_percent))
+
+
+def _next_place(
+    task: SearchTask, search: SearchState, here: tuple[float, float], now_s: float, threads: int, onward: Onward
+) -> Place:
+    """Raises PlannerError."""
+    number, avoid = search.place_number + 1, onward.avoid
+    return choose_place(task, search, here, number, now_s, threads, onward.craft_id, avoid).place
 
 
 def _short(limits: Limits, climbed: Situation, legs: list[tuple[float, float]]) -> safety.BatteryShort | None:

@@ -172,9 +172,10 @@ class ReceiverKeepsUp:
 
 @dataclass(frozen=True, slots=True)
 class WorkVetoed:
-    """Safety refused a vehicle command right before it was sent."""
+    """Safety refused a vehicle command right before it was sent. on_ground: a take-off, and it stands there still."""
 
     vetoes: tuple[Reason, ...]
+    on_ground: bool = False
 
 
 @dataclass(frozen=True, slots=True)

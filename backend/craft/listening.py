@@ -161,8 +161,10 @@ class Listening:
 
     @property
     def lost_percent(self) -> float:
-        """How much of what a receiver that is well took in the last seconds got lost."""
-        return self._receiver.lost_percent if self.state == "ok" else 0.0
+        """How much of what a receiver that is well took in the last seconds got lost, 0 to 100. What it says that is no
+        number counts for nothing: a fact that holds one could not be read again."""
+        told = self._receiver.lost_percent if self.state == "ok" else 0.0
+        return min(max(told, 0.0), 100.0) if math.isfinite(told) else 0.0
 
     @property
     def age_s(self) -> float | None:

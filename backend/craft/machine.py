@@ -141,9 +141,9 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             clock_seen(step, given)
         case ReceiverLoses() | ReceiverKeepsUp():
             losses_seen(step, given)
-        case WorkVetoed(vetoes=vetoes):
+        case WorkVetoed(vetoes=vetoes, on_ground=on_ground):
             if craft.phase in AUTOMATIC:
-                refuse_flight(step, vetoes)
+                refuse_flight(step, vetoes, on_ground)
         case Broke(because=because):
             if craft.engaged and not craft.taken_over:
                 alert(step, "failure", "warning", because)
@@ -370,7 +370,7 @@ def _on_the_ground(step: CraftStep) -> None:
         reason = flight.Landed("automatic")
         step.do(CancelWork())
         step.go("hold", reason)
-    if all(raised.topic != "ground" for raised in step.craft.open_alerts):
+    if not step.on_ground:
         clear_failsafe(step)
         step.do(CancelTimer("order"))
         clear_alerts(step, "order")
@@ -385,7 +385,7 @@ def _timer(step: CraftStep, given: TimerExpired) -> None:
             step.record(HoldOrdered(craft_id=craft_id, by=None, reason=reason))
             alert(step, "console", "warning", reason)
             hold(step, reason)
-        case "console_return" if phase in AUTOMATIC or phase == "hold":
+        case "console_return" if phase in AUTOMATIC or (phase == "hold" and not step.on_ground):
             reason = flight.NoConsole("return")
             step.record(ReturnOrdered(craft_id=craft_id, by=None, reason=reason))
             go_home(step, reason)

@@ -30,7 +30,7 @@ from backend.craft.step import (
     go_on,
     insist,
     record_vetoes,
-    take_off,
+    take_off_again,
 )
 from backend.events import (
     AbortOrdered,
@@ -148,7 +148,7 @@ def _resume(step: CraftStep, given: CraftOrdered) -> None:
         insist(step, "hold")
         step.go("hold", reason)
     elif given.on_ground and not search.found:
-        take_off(step, reason)
+        take_off_again(step, reason)
     else:
         go_on(step, reason)
 

@@ -65,13 +65,13 @@ class CraftState:
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. reached: the craft
     is there, and whether it turns there is not decided. attempt: turns begun at the place. in_vain: those of them that
     ended without a bearing; one that a hold or a pilot broke off is none of them. maximum_retakes: of one sweep, from
-    the specification (see `retakes`). has_bearing: it has taken one. avoid: places vetoed or without a usable sweep
-    since the last bearing, or since the search area changed. refused: places that the autopilot would not fly to, since
-    the search area changed; refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its
-    way home. ladder: of the hold, return or landing that was ordered last; None once something else has come of it.
-    counting_down: it returns soon because its battery runs low; countdown_stopped: somebody has stopped that, which
-    they may once a flight. antenna: that it has flown with; None: nobody kept it. nets_wait: the autopilot's own fence
-    is not known to be that of the search area.
+    the specification (see `retakes`). taken: its bearings, each with its place, left_out: those of them that do not
+    count. avoid: places vetoed or without a usable sweep since the last bearing, or since the search area changed.
+    refused: places that the autopilot would not fly to, since the search area changed; refused_in_a_row: how many of
+    the last ones were refused. return_reason: why it is on its way home. ladder: of the hold, return or landing that
+    was ordered last; None once something else has come of it. counting_down: it returns soon because its battery runs
+    low; countdown_stopped: somebody has stopped that, which they may once a flight. antenna: that it has flown with;
+    None: nobody kept it. nets_wait: the autopilot's own fence is not known to be that of the search area.
     """
 
     craft_id: str
@@ -81,7 +81,8 @@ class CraftState:
     searching: bool = False
     automatic: bool = True
     maximum_retakes: int = 2
-    has_bearing: bool = False
+    taken: tuple[tuple[str, Place], ...] = ()
+    left_out: frozenset[str] = frozenset()
     took_off: bool = False
     chosen: PlanChosen | None = None
     accepted: bool = False
@@ -107,6 +108,11 @@ class CraftState:
     def taken_over(self) -> bool:
         """A pilot flies, or did last and nobody has taken control back."""
         return pilot_has(self.authority)
+
+    @property
+    def has_bearing(self) -> bool:
+        """One that counts."""
+        return any(bearing_id not in self.left_out for bearing_id, _ in self.taken)
 
     @property
     def comes_down_as_ordered(self) -> bool:
@@ -232,13 +238,31 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
                 return replace(state, in_vain=in_vain)
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
-            return replace(state, chosen=None, accepted=False, avoid=(), has_bearing=True)
-        case BearingExcluded() | BearingIncluded() | SourceMuteChanged() | PrioritiesChanged() if (
-            state.phase == "waiting"
-        ):
-            return replace(state, chosen=None)
+            taken = (*state.taken, (event.bearing_id, event.place))
+            return replace(state, chosen=None, accepted=False, avoid=(), taken=taken)
+        case BearingExcluded() | BearingIncluded():
+            return _counted_anew(_planned_anew(state), event)
+        case SourceMuteChanged() | PrioritiesChanged():
+            return _planned_anew(state)
         case _:
             return state
+
+
+def _planned_anew(state: CraftState) -> CraftState:
+    """A place that is only proposed comes from what was known before."""
+    return replace(state, chosen=None) if state.phase == "waiting" else state
+
+
+def _counted_anew(state: CraftState, event: BearingExcluded | BearingIncluded) -> CraftState:
+    """A turn whose bearing is left out was made in vain. Once none is left the place is avoided: nothing else keeps it
+    from lying above the emitter, and without a bearing the craft would turn next where it hovers."""
+    place = dict(state.taken).get(event.bearing_id)
+    if place is None:
+        return state
+    if isinstance(event, BearingIncluded):
+        return replace(state, left_out=state.left_out - {event.bearing_id})
+    after = replace(state, left_out=state.left_out | {event.bearing_id})
+    return after if after.has_bearing else replace(after, avoid=(*after.avoid, *(place for _, place in after.taken)))
 
 
 def retakes(most: int, has_bearing: bool, reason: Reason) -> int:

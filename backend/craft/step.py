@@ -74,6 +74,11 @@ class CraftStep:
         """The autopilot's failsafe brings the vehicle home or down."""
         return self.craft.authority.who == "failsafe"
 
+    @property
+    def on_ground(self) -> bool:
+        """It was found there in hold, and nobody has resumed since."""
+        return any(raised.topic == "ground" for raised in self.craft.open_alerts)
+
     def do(self, effect: CraftEffect) -> None:
         """Ask for it, after what was asked for before; the state does not change."""
         self.effects.append(effect)
@@ -150,6 +155,14 @@ def take_off(step: CraftStep, reason: Reason) -> None:
     """To the mission's flight altitude, metres above home."""
     step.go("taking_off", reason)
     step.do(TakeOff(step.search.mission.flight.altitude_relative_m))
+
+
+def take_off_again(step: CraftStep, reason: Reason) -> None:
+    """From the ground, of a search that was begun before: no checklist has asked what it would fly to."""
+    craft, altitude_m = step.craft, step.search.mission.flight.altitude_relative_m
+    step.go("taking_off", reason)
+    chosen = None if craft.chosen is None else craft.chosen.place
+    step.do(TakeOff(altitude_m, again=True, chosen=chosen, avoid=(*craft.avoid, *craft.refused)))
 
 
 def measure(step: CraftStep, reason: Reason) -> None:
@@ -340,9 +353,14 @@ def _topic_of(veto: Reason) -> Topic:
     return "clock" if isinstance(veto, ClockRateOdd) else "safety"
 
 
-def refuse_flight(step: CraftStep, vetoes: tuple[Reason, ...]) -> None:
-    """Safety said no: go home when the battery says so, else hold and say why."""
+def refuse_flight(step: CraftStep, vetoes: tuple[Reason, ...], on_ground: bool = False) -> None:
+    """Safety said no: go home when the battery says so, else hold and say why. What stands on the ground stays there,
+    and its search open: another battery, or another place, may mend it."""
     record_vetoes(step, vetoes)
+    if on_ground and step.craft.phase == "taking_off":
+        alert(step, "safety", "warning", vetoes[0])
+        step.go("hold", vetoes[0])
+        return
     of_battery = [isinstance(reason, BATTERY) for reason in vetoes]
     alert(step, _topic_of(vetoes[0]), "warning", vetoes[0])
     if all(of_battery):

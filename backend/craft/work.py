@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
-from backend.craft.first_turn import limits_with
+from backend.craft.first_turn import Onward, first_turn, limits_with
 from backend.craft.listening import Listening
 from backend.craft.measuring import Measured, measure
 from backend.craft.on_the_way import heard_on_leg, nose_swung, swings_of
@@ -71,12 +71,19 @@ class Work:
                 return inputs.WorkVetoed(vetoes)
             await vehicle.goto(position, altitude, self.task.mission.flight.speed_m_s)
         else:
-            vetoes = start_vetoes(self.limits_now, now)
+            vetoes = start_vetoes(self.limits_now, now) or (await self._beyond_battery(effect) if effect.again else ())
             if vetoes:
-                return inputs.WorkVetoed(vetoes)
+                return inputs.WorkVetoed(vetoes, on_ground=now.telemetry.in_air is False)
             await vehicle.take_off(self._take_off_height(effect.altitude_relative_m))
         heard = vehicle.telemetry()
         return inputs.InTheAir(self._here(), heard.altitude_relative_m or effect.altitude_relative_m)
+
+    async def _beyond_battery(self, effect: effects.TakeOff) -> tuple[Reason, ...]:
+        """Whether it would come home before its first turn."""
+        onward = Onward(effect.chosen, effect.avoid, self.equipment.craft_id)
+        now, threads = self.situation(), self.equipment.threads
+        found = await asyncio.to_thread(first_turn, self.task, self.search(), self.limits, now, threads, onward)
+        return () if found.refusal is None else (found.refusal,)
 
     async def fly(self, effect: effects.FlyTo) -> inputs.CraftInput:
         """Arrived, or WorkVetoed: asked again before each leg of the way round no-fly zones. Raises VehicleError."""

@@ -53,7 +53,8 @@ class BeliefUpdated(Fact):
     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
     significant: then nothing is claimed. `sources`: of a joint belief, which estimates the errors of each source and
     uses them; empty of one that takes errors to be independent. `legs`: what those that may count as places say of the
-    estimate, in a mission that never stops to turn."""
+    estimate, in a mission that never stops to turn. `goal_m`: what the expected error must fall below, where that is
+    more than the specification asks: of an emitter that moves."""
 
     kind: Literal["belief_updated"] = "belief_updated"
     emitter_id: Id
@@ -63,6 +64,7 @@ class BeliefUpdated(Fact):
     localized: bool
     not_yet: list[Reason]
     contradicting: list[str] = Field(default_factory=list[str])
+    goal_m: Known = None
     heading_offset_deg: Known = None
     heading_offset_std_error_deg: Known = None
     sources: list[SourceErrorsFact] = Field(default_factory=list[SourceErrorsFact])

@@ -212,6 +212,7 @@ class Localization:
             consistent=said.consistent,
             localized=said.localized and doubt is None,
             not_yet=not_yet,
+            goal_m=self.rule.threshold if self.moving else None,
             contradicting=[measured[index].bearing_id for index in said.against],
             heading_offset_deg=None if doubt is None else doubt.offset_deg,
             heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,

@@ -115,6 +115,7 @@ def _every_input(number: int, attempt: int, measured: int) -> tuple[inputs.Craft
         inputs.WorkVetoed((CLOCK_ODD,)),
         inputs.WorkVetoed((VETO,)),
         inputs.WorkVetoed((BATTERY_VETO,)),
+        inputs.WorkVetoed((BATTERY_VETO,), on_ground=True),
         *(inputs.AuthorityHeard(authority) for authority in AUTHORITIES),
         inputs.FailsafeEnded("HOLD"),
         *(inputs.LinkDown(link, LINK_LOST) for link in LINKS),

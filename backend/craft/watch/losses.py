@@ -11,6 +11,8 @@ from hardware.reasons.receiver import SamplesLost
 
 ALARMING_PERCENT = 5.0
 """A loss above this raises an alert in flight, which stays until the loss is down to LOST_PERCENT."""
+CALM_S = 10.0
+"""And has been for so long: a receiver that is opened again, for other channels say, counts from nothing."""
 
 
 @dataclass(slots=True)
@@ -18,15 +20,22 @@ class LossWatch:
     """Of one craft's receiver."""
 
     _losing: bool = False
+    _calm_since_s: float | None = None
 
-    def look(self, lost_percent: float, trouble: Reason | None) -> list[inputs.CraftInput]:
+    def look(self, lost_percent: float, trouble: Reason | None, now_s: float) -> list[inputs.CraftInput]:
         """One input when it begins to lose samples, and one when it stops. None while the receiver is in trouble: the
         trouble has an alert of its own, and a loss that goes on afterwards is reported anew."""
         if trouble is not None:
-            self._losing = False
+            self._losing, self._calm_since_s = False, None
             return []
-        losing = lost_percent > (LOST_PERCENT if self._losing else ALARMING_PERCENT)
-        if losing == self._losing:
+        if not self._losing:
+            self._losing = lost_percent > ALARMING_PERCENT
+            return [inputs.ReceiverLoses(SamplesLost(lost_percent))] if self._losing else []
+        if lost_percent > LOST_PERCENT:
+            self._calm_since_s = None
             return []
-        self._losing = losing
-        return [inputs.ReceiverLoses(SamplesLost(lost_percent)) if losing else inputs.ReceiverKeepsUp()]
+        self._calm_since_s = now_s if self._calm_since_s is None else self._calm_since_s
+        if now_s - self._calm_since_s < CALM_S:
+            return []
+        self._losing, self._calm_since_s = False, None
+        return [inputs.ReceiverKeepsUp()]

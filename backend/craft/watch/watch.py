@@ -71,7 +71,7 @@ class Watch:
         self.look_at_authority()
         consoles = self.equipment.publisher.watchers() if self.equipment.watch_consoles else None
         self._give_all(self._links.look(telemetry, now, self.listening.trouble, consoles))
-        self._give_all(self._losses.look(self.listening.lost_percent, self.listening.trouble))
+        self._give_all(self._losses.look(self.listening.lost_percent, self.listening.trouble, now))
         self._give_all(self._clock.look(telemetry))
         self._give_all(self._battery.look(self.situation(), self.state(), self.limits))
         self._give_all(self._way_down.look(telemetry, now, self.state(), self.limits))

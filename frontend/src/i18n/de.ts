@@ -279,6 +279,7 @@ export const de: Record<MessageKey, string> = {
   "estimate.rmse": "erwarteter Fehler",
   "estimate.c95": "95-%-Gebiet",
   "estimate.threshold": "Ziel {length}",
+  "estimate.movingGoal": "Ziel, solange er sich bewegt; eingestellt {asked}",
   "estimate.within": "{percent} % unter {length}",
   "estimate.localized": "Gefunden",
   "estimate.notYet": "Noch nicht",

@@ -170,6 +170,7 @@ export const en = {
   "estimate.rmse": "expected error",
   "estimate.c95": "95 % region",
   "estimate.threshold": "goal {length}",
+  "estimate.movingGoal": "goal while it moves, {asked} set",
   "estimate.within": "{percent} % within {length}",
   "estimate.localized": "Localized",
   "estimate.notYet": "Not yet",

@@ -110,21 +110,33 @@ function BatteryThen() {
   );
 }
 
-/** How likely the emitter is as near to the estimate as the mission wants to know it; null until the belief is there. */
-const insideGoal = computed<number | null>(() => {
+/** What the expected error must fall below: of an emitter that moves more than the mission asks for. */
+const goalM = computed<number | null>(() => {
   const { belief, spec } = mission.value;
-  const frame = shownBelief.value;
-  const estimate = belief?.fact.estimate;
-  if (!estimate || !spec || frame?.bearings !== belief.fact.bearings) return null;
-  return shareWithin(frame, lonLat(estimate), spec.localization.expected_rmse_m);
+  return belief?.fact.goal_m ?? spec?.localization.expected_rmse_m ?? null;
 });
 
-function Goal({ length }: { length: string }) {
+/** How likely the emitter is as near to the estimate as it has to be known; null until the belief is there. */
+const insideGoal = computed<number | null>(() => {
+  const { belief } = mission.value;
+  const frame = shownBelief.value;
+  const estimate = belief?.fact.estimate;
+  if (!estimate || goalM.value === null || frame?.bearings !== belief.fact.bearings) return null;
+  return shareWithin(frame, lonLat(estimate), goalM.value);
+});
+
+function Goal({ asked }: { asked: number }) {
   const share = insideGoal.value;
+  const goal = goalM.value ?? asked;
+  const units = settings.value.units;
+  const length = formatLength(goal, units);
   return (
-    <small data-testid="inside-goal" data-share={share}>
-      {share === null ? t("estimate.threshold", { length }) : t("estimate.within", { length, percent: Math.round(100 * share) })}
-    </small>
+    <>
+      <small data-testid="inside-goal" data-share={share}>
+        {share === null ? t("estimate.threshold", { length }) : t("estimate.within", { length, percent: Math.round(100 * share) })}
+      </small>
+      {goal > asked && <small data-testid="moving-goal">{t("estimate.movingGoal", { asked: formatLength(asked, units) })}</small>}
+    </>
   );
 }
 
@@ -189,7 +201,7 @@ export function EstimatePanel() {
               <dt>{t("estimate.rmse")}</dt>
               <dd data-testid="expected-rmse" data-value={estimate.expected_rmse_m}>
                 ±{formatLength(estimate.expected_rmse_m, units)}
-                {spec && <Goal length={formatLength(spec.localization.expected_rmse_m, units)} />}
+                {spec && <Goal asked={spec.localization.expected_rmse_m} />}
               </dd>
             </div>
             <div>

@@ -2376,7 +2376,8 @@ export interface components {
          *     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
          *     significant: then nothing is claimed. `sources`: of a joint belief, which estimates the errors of each source and
          *     uses them; empty of one that takes errors to be independent. `legs`: what those that may count as places say of the
-         *     estimate, in a mission that never stops to turn.
+         *     estimate, in a mission that never stops to turn. `goal_m`: what the expected error must fall below, where that is
+         *     more than the specification asks: of an emitter that moves.
          */
         BeliefUpdated: {
             /**
@@ -2391,6 +2392,7 @@ export interface components {
             localized: boolean;
             not_yet: components["schemas"]["Reason"][];
             contradicting: string[];
+            goal_m: number | null;
             heading_offset_deg: number | null;
             heading_offset_std_error_deg: number | null;
             sources: components["schemas"]["SourceErrorsFact"][];

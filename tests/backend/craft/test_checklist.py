@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from equipment import TWO_EMITTERS, spec
+from equipment import TWO_EMITTERS, HummingReceiver, spec
 from facts import CHECK
 from relief import hill, level, terrain
 from stage import Stage
@@ -20,7 +21,7 @@ from backend.reasons import terrain as terrain_reasons
 from backend.spec import EmitterSpec, MissionSpec, Polygon
 from backend.terrain import Terrain
 from hardware.frame import LocalFrame
-from hardware.readings import CheckName, Place, ReturnAltitude
+from hardware.readings import CheckName, Place, PowerSample, ReturnAltitude
 from hardware.reasons.receiver import ReceiverUnplugged, SamplesLost
 from planner.reason import remedy_of, text_of
 
@@ -130,6 +131,22 @@ async def test_a_receiver_that_loses_samples_is_cautioned_about(flies: bool) -> 
     assert (check.ok, check.blocking, check.reason) == (False, False, SamplesLost(12.5))
 
 
+async def test_a_receiver_is_asked_what_it_loses_once_that_can_be_said() -> None:
+    """Its first readings are there after a tenth of a second: seldom has anything got lost by then."""
+
+    class LaterLosing(HummingReceiver):
+        async def samples(self) -> AsyncIterator[PowerSample]:
+            began_s = self.clock.now()
+            async for sample in super().samples():
+                self.lost_percent = 10.0 if self.clock.now() > began_s + 1.0 else 0.0
+                yield sample
+
+    stage = Stage()
+    stage.receiver = LaterLosing(stage.clock)
+    check = (await checked(stage))["receiver"]
+    assert (check.ok, check.blocking, check.reason) == (False, False, SamplesLost(10.0))
+
+
 async def test_a_receiver_that_delivers_nothing_blocks() -> None:
     stage = Stage()
     stage.receiver.mute = True
@@ -143,6 +160,14 @@ async def test_a_tag_that_is_not_heard_here_does_not_block() -> None:
     tag = EmitterSpec(kind="pulsed", pulse_period_s=0.5)
     check = (await checked(stage, spec((tag,))))["receiver"]
     assert (check.ok, check.blocking, check.reason) == (False, False, checks.TagUnheard(tag.frequency_hz))
+
+
+async def test_what_a_receiver_loses_is_told_before_a_tag_that_is_not_heard_here() -> None:
+    stage = Stage()
+    stage.receiver.unheard = True
+    stage.receiver.lost_percent = 12.5
+    check = (await checked(stage, spec((EmitterSpec(kind="pulsed", pulse_period_s=0.5),))))["receiver"]
+    assert (check.ok, check.blocking, check.reason) == (False, False, SamplesLost(12.5))
 
 
 async def test_every_emitter_is_listened_for() -> None:

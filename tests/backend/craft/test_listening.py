@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import AsyncIterator, Callable
 
 import pytest
@@ -51,6 +52,17 @@ async def test_samples_of_an_interval_come_in_order() -> None:
     assert listening.state == "ok"
     await listening.stop()
     assert listening.state == "off"
+
+
+@pytest.mark.parametrize(("told", "said"), [(math.nan, 0.0), (math.inf, 0.0), (-5.0, 0.0), (400.0, 100.0), (6.5, 6.5)])
+async def test_what_a_receiver_says_that_it_loses_is_a_share(told: float, said: float) -> None:
+    """It becomes a fact: one that holds no number could not be read again, nor the mission that it is part of."""
+    listening, receiver, _ = made()
+    receiver.lost_percent = told
+    listening.start()
+    assert await listening.first_sample(CARRIER_HZ, 5.0)
+    assert listening.lost_percent == said
+    await listening.stop()
 
 
 async def test_samples_that_come_late_are_waited_for() -> None:

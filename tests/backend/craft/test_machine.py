@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 from craft_walk import CraftWalk, craft_in, moves, refusal, sent
 from facts import (
+    BATTERY_VETO,
     HOME,
     IMPORT,
+    LINK_LOST,
     NO_PLACE,
     NOT_YET,
     OURS,
@@ -87,12 +89,42 @@ def test_a_vehicle_that_landed_by_itself_waits_on_the_ground_and_takes_off_again
         assert walk.craft.phase == "hold"
         assert walk.topics == ["ground"]
         assert walk.give(inputs.Landed()) == ()
+        chosen = walk.craft.chosen
+        assert chosen is not None
         asked = walk.order(commands.Resume(), on_ground=True)
-        assert moves(asked) == [effects.TakeOff(SPEC.flight.altitude_relative_m)]
+        assert moves(asked) == [effects.TakeOff(SPEC.flight.altitude_relative_m, again=True, chosen=chosen.place)]
         assert walk.craft.phase == "taking_off"
         assert not walk.topics
         walk.give(inputs.InTheAir(HOME, 40.0))
         assert walk.craft.phase == "flying"
+
+
+def test_a_search_that_waits_on_the_ground_does_not_end_because_nobody_watches() -> None:
+    """Whoever changes the battery there may close the console meanwhile."""
+    walk = craft_in("hold")
+    walk.give(inputs.Landed())
+    walk.give(inputs.LinkDown("console", LINK_LOST))
+    assert not sent(walk.give(inputs.TimerExpired("console_return")))
+    assert (walk.craft.phase, walk.craft.engaged) == ("hold", True)
+    walk.order(commands.Resume(), on_ground=True)
+    walk.give(inputs.InTheAir(HOME, 40.0))
+    walk.give(inputs.TimerExpired("console_return"))
+    assert walk.craft.phase == "returning"
+
+
+def test_what_the_battery_forbids_on_the_ground_waits_there_and_the_search_goes_on() -> None:
+    walk = craft_in("hold")
+    walk.give(inputs.Landed())
+    walk.order(commands.Resume(), on_ground=True)
+    chosen = walk.craft.chosen
+    asked = walk.give(inputs.WorkVetoed((BATTERY_VETO,), on_ground=True))
+    assert not sent(asked)
+    assert (walk.craft.phase, walk.craft.engaged, walk.search.outcome) == ("hold", True, None)
+    assert walk.craft.chosen == chosen
+    assert (walk.topics, walk.last_alert.reason) == (["safety"], BATTERY_VETO)
+    walk.order(commands.Resume(), on_ground=True)
+    assert not walk.topics
+    assert walk.craft.phase == "taking_off"
 
 
 def test_a_vehicle_that_landed_in_hold_when_all_is_localized_is_done() -> None:

@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import pytest
 from craft_inputs import CLOCK_ODD
 from craft_sweep import Step, reachable, stepped, steps
-from craft_walk import PHASES, VEHICLE, moves, sent
+from craft_walk import PHASES, VEHICLE, moves, ordered, sent
 from facts import HOME, rejected
 
 from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.ladder import Ladder
 from backend.craft.low_battery import COUNTDOWN_S
+from backend.craft.orders import resume_refusal
 from backend.craft.state import AUTOMATIC, HOMEWARD, pilot_has
 from backend.craft.who_flies import kept_of
 from backend.events import OrderDone, OrderNotDone
 from backend.reasons.flight import OrderName
 from backend.search.effects import Record
 from hardware.reasons.receiver import SamplesLost
+from hardware.reasons.sweep import NoDirection, UnlikeAntenna
 
 # A million steps, made once, and without the tracer that would make them five times as slow.
 pytestmark = [pytest.mark.no_cover, pytest.mark.timeout(900)]
@@ -239,6 +242,47 @@ def test_what_a_receiver_loses_is_said_while_it_lasts_and_changes_nothing_else()
             said = [raised.reason for raised in step.after.open_alerts if raised.topic == "receiver"]
             loses = isinstance(step.given, inputs.ReceiverLoses)
             assert said == ([SamplesLost(12.0)] if loses else []), step.about
+
+
+def test_what_safety_forbids_on_the_ground_sends_nothing_and_ends_no_search() -> None:
+    seen = 0
+    for step in steps(inputs.WorkVetoed):
+        refused = isinstance(step.given, inputs.WorkVetoed) and step.given.on_ground
+        if refused and step.craft.phase == "taking_off":
+            seen += 1
+            assert {type(effect) for effect in step.asked} == {Record}, step.about
+            assert (step.after.phase, step.after.engaged) == ("hold", True), step.about
+            assert step.after.chosen == step.craft.chosen, step.about
+            assert [raised.topic for raised in step.after.open_alerts].count("safety") == 1, step.about
+            again = stepped(step.after, step.search, ordered(commands.Resume(), on_ground=True))
+            assert again.carried_out == (resume_refusal(step.after, step.search) is None), again.about
+            if again.carried_out and not step.search.found:
+                assert again.after.phase == "taking_off", again.about
+                assert "safety" not in [raised.topic for raised in again.after.open_alerts], again.about
+    assert seen > 5
+
+
+def test_a_place_is_left_at_once_before_the_first_bearing_only_and_only_for_a_sweep_unlike_the_antenna() -> None:
+    """Whether another turn is made there, in every state that measures, each turn and each reason."""
+    seen = 0
+    for craft, search in reachable():
+        if craft.phase != "measuring" or craft.chosen is None:
+            continue
+        for has_bearing, reason in product((False, True), (UnlikeAntenna(0.5, 0.7), NoDirection())):
+            attempts = frozenset(range(1, 4))
+            for attempt in attempts:
+                vain = frozenset(one for one in attempts if one < attempt)
+                before = (("b9", HOME),)
+                left_out = frozenset[str]() if has_bearing else frozenset({"b9"})
+                turns = replace(craft, taken=before, left_out=left_out, attempt=attempt, in_vain=vain)
+                swept = rejected(attempt, craft.place_number).model_copy(update={"reason": reason})
+                step = stepped(turns, search, inputs.SweepTaken((swept,)))
+                left = attempt > craft.maximum_retakes or (isinstance(reason, UnlikeAntenna) and not has_bearing)
+                assert (step.after.chosen is None) == left, step.about
+                assert (effects.Measure in map(type, step.asked)) == (not left), step.about
+                assert (swept.place in step.after.avoid) == left or swept.place in craft.avoid, step.about
+                seen += left
+    assert seen > 10
 
 
 def test_nothing_moves_a_craft_that_is_not_engaged_but_its_start() -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from uuid import uuid4
 
 import pytest
-from equipment import spec
+from equipment import FRAME, spec
 from flights import flying, order, stuck
 from stage import REFUSED, Stage
 
@@ -22,16 +22,35 @@ from backend.events import (
     PhaseChanged,
     Recorded,
     ReturnOrdered,
+    SafetyVetoed,
 )
 from backend.mission.inputs import ToCraft
 from backend.ports import JournalDamaged
 from backend.reasons import PreflightFailed
 from backend.reasons.flight import FailsafeFlies, Landed, NotStored, WatchBroke
-from backend.reasons.safety import BATTERY, BatteryShort, BatteryUnknown, FailsafeActs, NotGivenBack
+from backend.reasons.safety import (
+    BATTERY,
+    BatteryShort,
+    BatteryUnknown,
+    FailsafeActs,
+    FirstTurnBeyondCharge,
+    NotGivenBack,
+)
 from backend.reasons.storage import MissionDamaged
-from backend.spec import Place, TimerSpec
+from backend.spec import MissionSpec, Place, Polygon, TimerSpec
 from hardware.reasons.receiver import ReceiverUnplugged
 from planner.reason import remedy_of
+
+
+def far_away(north_m: float) -> MissionSpec:
+    """An area of 200 x 100 m that begins so far north of home, in a fence that holds both."""
+
+    def area_of(south: float, east: float, north: float) -> Polygon:
+        ring = [(-east, south), (east, south), (east, north), (-east, north), (-east, south)]
+        return Polygon(coordinates=[[(p.lon, p.lat) for p in (FRAME.to_geo(x, y) for x, y in ring)]])
+
+    found = spec(fence=area_of(-40.0, 140.0, north_m + 140.0))
+    return found.model_copy(update={"area": area_of(north_m, 100.0, north_m + 100.0)})
 
 
 def who_took(stage: Stage, mission_id: str) -> set[str]:
@@ -224,6 +243,35 @@ async def test_a_resume_on_the_ground_is_refused_until_the_battery_was_changed(s
     refused = await order(stage, mission_id, commands.Resume())
     assert isinstance(refused.reason, BATTERY)
     assert stage.active.state.phase == "hold"
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=95.0)
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+    await stage.until(mission_id, "place_reached")
+
+
+@pytest.mark.parametrize("planned", [True, False])
+async def test_a_resume_on_the_ground_stays_there_where_the_battery_does_not_last_for_the_next_turn(
+    stage: Stage, planned: bool
+) -> None:
+    """It took off, came home from above home, and the search was over."""
+    mission_id = await stage.room.drafts.create(far_away(250.0), "anna")
+    assert (await order(stage, mission_id, commands.Start())).accepted
+    await stage.until(mission_id, "took_off")
+    stage.vehicle.stuck = True
+    await stage.until(mission_id, "flight_started")
+    assert (await order(stage, mission_id, commands.Hold())).accepted
+    if not planned:
+        assert (await order(stage, mission_id, commands.Veto())).accepted
+    stage.vehicle.stuck = False
+    stage.vehicle.touch_down()
+    await stage.until(mission_id, "alert_raised")
+    sent = list(stage.vehicle.names)
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=60.0)
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+    vetoed = await stage.until(mission_id, "safety_vetoed")
+    assert isinstance(vetoed, SafetyVetoed)
+    assert isinstance(vetoed.reason, FirstTurnBeyondCharge)
+    assert stage.active.state.phase == "hold"
+    assert stage.vehicle.names == sent
     stage.vehicle.state = replace(stage.vehicle.state, battery_percent=95.0)
     assert (await order(stage, mission_id, commands.Resume())).accepted
     await stage.until(mission_id, "place_reached")

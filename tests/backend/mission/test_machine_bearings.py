@@ -171,6 +171,40 @@ def test_muting_and_unmuting_moves_no_craft(phase: str) -> None:
     assert fold(walk.recorded) == walk.state
 
 
+def test_where_the_only_bearing_is_left_out_the_craft_does_not_turn_again() -> None:
+    """Without a bearing the next turn is planned where it hovers: if that was wrong, right above the emitter."""
+    walk = Walk().to("measuring")
+    walk.to_craft(inputs.SweepTaken((bearing(1),)))
+    walk.command(commands.Hold())
+    walk.believe()
+    walk.command(commands.ExcludeBearing(bearing_id="b1"))
+    assert not walk.craft.has_bearing
+    walk.believe()
+    walk.command(commands.Resume())
+    planned = [effect for effect in of_craft(tuple(walk.asked)) if isinstance(effect, effects.PlanNext)][-1]
+    assert planned.avoid == (bearing(1).place,)
+    walk.to_craft(inputs.Planned(plan(2)))
+    walk.arrive()
+    walk.to_craft(inputs.SweepTaken((rejected(1, 2).model_copy(update={"reason": UNLIKE}),)))
+    assert walk.craft.phase == "planning", "as before the first bearing, it is not repeated"
+    walk.command(commands.IncludeBearing(bearing_id="b1"))
+    assert walk.craft.has_bearing
+    assert fold(walk.recorded) == walk.state
+
+
+def test_a_place_is_not_avoided_while_another_bearing_counts() -> None:
+    walk = Walk().to("measuring")
+    walk.to_craft(inputs.SweepTaken((bearing(1),)))
+    walk.believe()
+    walk.to_craft(inputs.Planned(plan(2)))
+    walk.arrive()
+    walk.to_craft(inputs.SweepTaken((bearing(2),)))
+    walk.believe()
+    walk.command(commands.ExcludeBearing(bearing_id="b1"))
+    assert walk.craft.has_bearing
+    assert walk.craft.avoid == ()
+
+
 def test_an_excluded_bearing_is_taken_out_of_the_belief_without_moving_the_vehicle() -> None:
     walk = Walk().to("measuring")
     walk.to_craft(inputs.SweepTaken((bearing(1),)))

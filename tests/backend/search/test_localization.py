@@ -21,6 +21,7 @@ from backend.spec import (
     FlightSpec,
     GaussianPriorSpec,
     MissionSpec,
+    MovementSpec,
     Polygon,
     PriorSpec,
     RingPriorSpec,
@@ -29,7 +30,7 @@ from backend.spec import (
 )
 from hardware.readings import Place
 from planner.belief.grid import digest
-from planner.reasons import PriorOutsideArea
+from planner.reasons import ExpectedErrorTooLarge, PriorOutsideArea
 from planner.types import GaussianPrior, RingPrior
 
 UNIFORM = UniformPriorSpec()
@@ -61,6 +62,17 @@ def test_crossing_bearings_localize_where_they_cross() -> None:
     assert fact.digest == digest(belief)
     assert fact.estimate.c95_area_m2 < math.pi * (3 * fact.estimate.major_axis_m) ** 2
     assert fact.estimate.minor_axis_m <= fact.estimate.major_axis_m
+
+
+def test_the_goal_of_an_emitter_that_moves_is_told_as_what_holds_a_claim_back() -> None:
+    moves = EmitterSpec(movement=MovementSpec(kind="animal", speed_m_s=0.5))
+    wanted = MissionSpec(name="m", area=AREA, emitters=[moves])
+    seen = [towards(x, -40.0, (150.0, 60.0), sigma=15.0) for x in (60.0, 150.0, 240.0)]
+    fact, _ = localization(wanted, HOME).belief_fact(seen)
+    (held_back,) = [reason for reason in fact.not_yet if isinstance(reason, ExpectedErrorTooLarge)]
+    assert fact.goal_m == held_back.threshold_m
+    assert held_back.threshold_m > wanted.localization.expected_rmse_m
+    assert task().belief_fact(seen)[0].goal_m is None, "the specification says it"
 
 
 def test_one_bearing_is_never_a_fix_however_narrow() -> None:
