@@ -70,15 +70,19 @@ def without_refused(
     """(n, 2) m: those that lie half a spacing, and at least SAME_PLACE_M, from every refused one (m ENU).
 
     While no standoff is asked for, a turn in vain may have been made above the emitter: r_min from every refused one
-    where any place is so far. Of what is left those that have echoes of their own, where there are any.
+    where any place is so far.
     """
     near = max(0.5 * (problem.action_spacing or belief.h), SAME_PLACE_M)
     away = _from_nearest(places, refused)
     if standoff_from(belief, problem) < problem.standoff and (away >= max(problem.standoff, near)).any():
         near = max(problem.standoff, near)
-    left = places[away >= near]
-    away = _from_nearest(left, problem.turned_at)
-    return left[away >= min(OTHER_ECHOES_M, away.max(initial=0.0))]
+    return places[away >= near]
+
+
+def with_own_echoes(places: FloatArray, problem: Problem) -> FloatArray:
+    """(n, 2) m: those at least OTHER_ECHOES_M from where a turn was made already; where none is, the farthest."""
+    away = _from_nearest(places, problem.turned_at)
+    return places[away >= min(OTHER_ECHOES_M, away.max(initial=0.0))]
 
 
 def _from_nearest(places: FloatArray, others: Sequence[tuple[float, float]]) -> FloatArray:

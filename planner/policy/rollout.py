@@ -16,7 +16,7 @@ from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.legs import far_enough
 from planner.options import BasePolicy, DiscreteSelection, Sampling
-from planner.policy.actions import Usable, constrained_actions, without_refused
+from planner.policy.actions import Usable, constrained_actions, with_own_echoes, without_refused
 from planner.policy.claim_ahead import ClaimAhead, choice, claim_ahead
 from planner.policy.dynamic_program import best_places, stands_on
 from planner.policy.fisher import telling_places
@@ -141,7 +141,8 @@ def claim_after(
     """
 
     def left(places: FloatArray) -> FloatArray:
-        return far_enough(problem, simulation.platform, without_refused(places, without, problem, belief))
+        allowed = with_own_echoes(without_refused(places, without, problem, belief), problem)
+        return far_enough(problem, simulation.platform, allowed)
 
     return claim_ahead(
         problem,
@@ -238,7 +239,7 @@ class Rollout:
         self, problem: Problem, belief: GridBelief, simulation: Simulation, program: ProgramTable | None
     ) -> FloatArray:
         def left(places: FloatArray) -> FloatArray:
-            allowed = without_refused(places, self.without, problem, belief)
+            allowed = with_own_echoes(without_refused(places, self.without, problem, belief), problem)
             return far_enough(problem, simulation.platform, allowed)
 
         def reached(places: FloatArray) -> FloatArray:

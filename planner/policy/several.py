@@ -26,7 +26,7 @@ from planner.belief.joint import JointBelief
 from planner.geometry import distance_to_convex
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, PlannerOptions
-from planner.policy.actions import action_space, standoff_from, without_refused
+from planner.policy.actions import action_space, standoff_from, with_own_echoes, without_refused
 from planner.policy.dynamic_program import stands_on
 from planner.policy.fisher import first_best, fisher, gain_beside_bias, information_gain
 from planner.policy.importance import mean_time, weights_of
@@ -352,7 +352,7 @@ def standoff_among(problem: Problem, places: int, emitters: int) -> float:
 def _places(wanted: Sequence[Wanted], simulation: Simulation, without: Sequence[tuple[float, float]]) -> FloatArray:
     """(n, 2) m: wherever the platform may measure and can get to."""
     problem, belief = wanted[0].problem, wanted[0].belief
-    places = without_refused(action_space(problem, belief), without, problem, belief)
+    places = with_own_echoes(without_refused(action_space(problem, belief), without, problem, belief), problem)
     if len(places) == 0:
         raise PlannerError(EveryPlaceRefused())
     reachable = np.isfinite(simulation.first_actions(places).costs)

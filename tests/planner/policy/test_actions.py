@@ -15,6 +15,7 @@ from planner.policy.actions import (
     belief_grid,
     constrained_actions,
     lattice,
+    with_own_echoes,
     without_refused,
 )
 from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
@@ -100,12 +101,12 @@ def test_a_place_shares_its_echoes_with_those_nearby():
     """A second bearing from there is off by the same, and belief and rollouts take it for another."""
     belief, turned_at = fold(FIELD, TWO), ((150.0, 60.0), (40.0, 20.0))
     places = action_space(FIELD, belief)
-    left = without_refused(places, [], replace(FIELD, turned_at=turned_at), belief)
+    left = with_own_echoes(places, replace(FIELD, turned_at=turned_at))
     away = np.min([np.hypot(*(places - place).T) for place in turned_at], axis=0)
     assert left.tolist() == places[away >= OTHER_ECHOES_M].tolist()
     assert len(left) < len(places)
     near = np.array([[150.0, 61.0], [150.0, 70.0], [41.0, 20.0]])
-    furthest = without_refused(near, [], replace(FIELD, turned_at=turned_at), belief)
+    furthest = with_own_echoes(near, replace(FIELD, turned_at=turned_at))
     assert furthest.tolist() == near[1:2].tolist(), "where all are near, the furthest"
 
 
