@@ -40,6 +40,9 @@ class Rig:
             assert self.clock.now() < end, f"did not happen in {seconds} s: {self.news}, {self.vehicle.telemetry()}"
             await self.clock.sleep(0.1)
 
+    async def climbed(self, height_m: float) -> None:
+        await self.until(lambda: (self.vehicle.telemetry().altitude_relative_m or 0.0) > height_m)
+
     async def announced(self, happened: Callable[[VehicleNews], bool]) -> None:
         await self.until(lambda: any(happened(news) for news in self.news))
 
@@ -264,7 +267,8 @@ async def test_a_home_that_was_not_heard_is_asked_for_again(rig: Rig) -> None:
 async def test_a_switch_that_an_order_undid_before_it_was_told_is_seen_by_its_channel() -> None:
     async for ardupilot in make("ardupilot"):
         await ardupilot.vehicle.take_off(10.0)
-        await ardupilot.vehicle.return_home()
+        await ardupilot.climbed(5.0)
+        await ardupilot.vehicle.return_home()  # just above the ground it would land before the switch moves
         await ardupilot.sim.order("move_switch")
         await ardupilot.announced(lambda news: isinstance(news, SwitchUndone))
 
