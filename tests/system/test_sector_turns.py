@@ -38,7 +38,8 @@ async def test_a_mission_is_localized_with_turns_only_as_far_as_needed(
 
     turns = [b["event"]["turn"] for b in operator.of("bearing_measured")]
     first = operator.of("bearing_measured")[0]
-    again = any(one["seq"] < first["seq"] for one in operator.of("sweep_rejected"))
+    rejected = [one for one in operator.of("sweep_rejected") if one["seq"] < first["seq"]]
+    again = any(one["event"]["place_number"] == first["event"]["place_number"] for one in rejected)
     assert turns[0]["planned_because"] == {"because": "again" if again else "first", "code": "whole_turn"}
     assert turns[0]["turned_deg"] == 360.0
     sectors = [turn for turn in turns[1:] if turn["planned_because"]["code"] == "sector_expected"]
