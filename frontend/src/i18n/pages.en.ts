@@ -248,6 +248,13 @@ export const pagesEn = {
   "missions.bringingIn": "Importing: {percent} %",
   "missions.recordingBroken": "{name} is not a recording: {reason}",
 
+  "estimate.movingGoal": "goal while it moves, {asked} set",
+  "estimate.batteryThen": "battery then",
+  "estimate.batteryMean": "about {percent} %",
+  "estimate.battery90": "90 %: {percent} %;",
+  "estimate.battery.enough": "{kept} % kept for home and reserve",
+  "estimate.battery.tight": "may not last: {kept} % kept for home and reserve",
+  "estimate.battery.short": "will not last: {kept} % kept for home and reserve",
   "edit.title": "Edit mission",
   "edit.save": "Save and check",
   "edit.saving": "Saving …",
