@@ -24,7 +24,7 @@ class LossWatch:
 
     def look(self, lost_percent: float, trouble: Reason | None, now_s: float) -> list[inputs.CraftInput]:
         """One input when it begins to lose samples, and one when it stops. None while the receiver is in trouble: the
-        trouble has an alert of its own, and a loss that goes on afterwards is reported anew."""
+        trouble has an alert of its own, and a loss that goes on afterwards is reported again."""
         if trouble is not None:
             self._losing, self._calm_since_s = False, None
             return []
