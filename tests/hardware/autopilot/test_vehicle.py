@@ -43,6 +43,10 @@ class Rig:
     async def climbed(self, height_m: float) -> None:
         await self.until(lambda: (self.vehicle.telemetry().altitude_relative_m or 0.0) > height_m)
 
+    async def knows_the_switch(self) -> None:
+        """The first position that is heard is no movement."""
+        await self.until(lambda: self.vehicle._monitor.mode_switch._position_us is not None)
+
     async def announced(self, happened: Callable[[VehicleNews], bool]) -> None:
         await self.until(lambda: any(happened(news) for news in self.news))
 
@@ -268,8 +272,7 @@ async def test_a_switch_that_an_order_undid_before_it_was_told_is_seen_by_its_ch
     async for ardupilot in make("ardupilot"):
         await ardupilot.vehicle.take_off(10.0)
         await ardupilot.climbed(5.0)
-        switch = ardupilot.vehicle._monitor.mode_switch
-        await ardupilot.until(lambda: switch._position_us is not None)  # a first position is no movement
+        await ardupilot.knows_the_switch()
         await ardupilot.vehicle.return_home()  # just above the ground it would land before the switch moves
         await ardupilot.sim.order("move_switch")
         await ardupilot.announced(lambda news: isinstance(news, SwitchUndone))
