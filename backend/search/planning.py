@@ -129,7 +129,7 @@ def decide(
     """The planner that the specification names."""
     options = task.mission.planner.options
     if options.method == "base_policy":
-        return base_policy_decision(task, belief, platform, without)
+        return base_policy_decision(task, measured, belief, platform, without)
     return plan(
         to_plan(task, measured, belief),
         belief,
@@ -228,10 +228,15 @@ def _learned_share(sigma: float, belief: JointBelief) -> float:
 
 
 def base_policy_decision(
-    task: Localization, belief: GridBelief, platform: tuple[float, float], without: Sequence[tuple[float, float]]
+    task: Localization,
+    measured: Sequence[BearingMeasured],
+    belief: GridBelief,
+    platform: tuple[float, float],
+    without: Sequence[tuple[float, float]],
 ) -> Decision:
     """The base policy alone, refused places kept out of the action space."""
-    problem = replace(task.problem, no_fly=(*task.problem.no_fly, *(_around(place) for place in without)))
+    refused = (*task.problem.no_fly, *(_around(place) for place in without))
+    problem = replace(task.problem, no_fly=refused, turned_at=turned_at(task, measured))
     return BASE_POLICIES[task.mission.planner.base_policy](problem, belief, platform)
 
 

@@ -45,17 +45,17 @@ def constrained_actions(problem: Problem, belief: GridBelief, usable: Usable | N
     """(n, 2) m: the action space without the places nearer than r_min to C95, and without those that cross too little.
 
     When fewer than two would be left, r_min shrinks until two are (6.1). usable: among which places the widest crossing
-    is looked for, where one is asked for.
+    is looked for, where one is asked for; None: nothing but these constraints and its own echoes is asked of a place.
     """
     places = action_space(problem, belief)
     if problem.crossing is not None:
-        places = places if usable is None else usable(places)
+        places = with_own_echoes(places, problem) if usable is None else usable(places)
         places = places[problem.crossing.crossed_from(places)]
     standoff = standoff_from(belief, problem)
-    if standoff <= 0 or len(places) == 0:
-        return places
-    clearance = distance_to_convex(places, confidence_region(belief))
-    return places[clearance >= min(standoff, np.sort(clearance)[-min(2, len(clearance))])]
+    if standoff > 0 and len(places) > 0:
+        clearance = distance_to_convex(places, confidence_region(belief))
+        places = places[clearance >= min(standoff, np.sort(clearance)[-min(2, len(clearance))])]
+    return with_own_echoes(places, problem) if usable is None else places
 
 
 def standoff_from(belief: GridBelief, problem: Problem) -> float:

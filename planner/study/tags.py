@@ -24,6 +24,7 @@ from planner.study.error_worlds import Row, Sensor
 from planner.study.errors import StudyError
 from planner.study.scenarios import Scenario, scenario
 from planner.study.truth import Claim, Model, bearing_of, claim_at, folded, prior_of
+from planner.study.truth_planners import places_of
 from planner.types import Bearing, FloatArray, LocalizationRule
 
 TAGS = {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8, "tags_4_first": 4, "tags_8_first": 8}
@@ -132,12 +133,14 @@ def _share(tags: Sequence[_Tag]) -> None:
 
 
 def _next_place(world: Scenario, wanted: Sequence[_Tag], here: FloatArray, options: PlannerOptions) -> FloatArray:
+    """With echoes of its own, as in flight. All hear every turn."""
     platform = (float(here[0]), float(here[1]))
+    problem = replace(world.problem, turned_at=places_of(wanted[0].bearings))
     if len(wanted) == 1:
         only = wanted[0]
-        chosen = plan(world.problem, only.belief, only.bearings, platform, options, threads=1)
+        chosen = plan(problem, only.belief, only.bearings, platform, options, threads=1)
     else:
-        asked = [Wanted(world.problem, tag.belief, tag.rank) for tag in wanted]
+        asked = [Wanted(problem, tag.belief, tag.rank) for tag in wanted]
         chosen = plan_several(asked, platform, options, threads=1)
     return np.array([chosen.x, chosen.y])
 

@@ -39,10 +39,17 @@ def next_place(
     bearings: Sequence[Bearing],
     here: tuple[float, float],
 ) -> Decision:
-    """The place of the next bearing. bearings: those in the belief; they state what the row states of each."""
+    """The place of the next bearing, with echoes of its own as in flight. bearings: those in the belief; they state
+    what the row states of each."""
+    problem = replace(problem, turned_at=places_of(bearings))
     if planner == "fisher":
         return fisher(problem, belief, here)
     return plan(_foreseen(problem, row, belief, bearings), belief, bearings, here, CROSSFIX, threads=1)
+
+
+def places_of(bearings: Sequence[Bearing]) -> tuple[tuple[float, float], ...]:
+    """m ENU, where they were taken."""
+    return tuple((bearing.x, bearing.y) for bearing in bearings)
 
 
 def _foreseen(problem: Problem, row: Row, belief: GridBelief, bearings: Sequence[Bearing]) -> Problem:

@@ -188,7 +188,7 @@ def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectio
     position, without = (0.0, 0.0), list[tuple[float, float]]()
     said, belief = task.belief_fact(measured)
     for number in range(1, MOST_PLACES + 1):
-        decision = base_policy_decision(task, belief, position, without)
+        decision = base_policy_decision(task, measured, belief, position, without)
         position = (decision.x, decision.y)
         bearing, wrong, refused = measure(task, sky, pattern, finder, position, number)
         rejected += refused

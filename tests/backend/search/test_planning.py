@@ -58,9 +58,11 @@ def test_the_next_place_is_allowed_explained_and_repeatable(method: str) -> None
         assert sum(c.dropped_in_round is None for c in first.candidates) == 1
 
 
-def test_no_turn_is_made_where_another_heard_the_same_echoes() -> None:
+@pytest.mark.parametrize("method", ["rollout", "base_policy"])
+def test_no_turn_is_made_where_another_heard_the_same_echoes(method: str) -> None:
     """A craft's; what a person on the ground heard, and of an emitter that moves, is another matter."""
-    made, seen = task(), [towards(x, y, (150.0, 90.0)) for x, y in ((0.0, -20.0), (300.0, 0.0), (20.0, 170.0))]
+    made = task(planner=PlannerSpec(method=method))  # type: ignore[arg-type]
+    seen = [towards(x, y, (150.0, 90.0)) for x, y in ((0.0, -20.0), (300.0, 0.0), (20.0, 170.0))]
     belief = made.planning_belief(made.planner_bearings(seen))
     x, y = FRAME.to_enu(next_place(made, belief, seen, (20.0, 170.0), 4, (), 1).place)
     assert min(math.dist((x, y), FRAME.to_enu(one.place)) for one in seen) >= OTHER_ECHOES_M - 0.01

@@ -1,5 +1,6 @@
 """The action space and what removes places from it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from planner.policy.actions import (
     with_own_echoes,
     without_refused,
 )
+from planner.policy.fisher import fisher
 from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
 from planner.types import Bearing, GaussianPrior, LinearMotion, Problem
 
@@ -108,6 +110,14 @@ def test_a_place_shares_its_echoes_with_those_nearby():
     near = np.array([[150.0, 61.0], [150.0, 70.0], [41.0, 20.0]])
     furthest = with_own_echoes(near, replace(FIELD, turned_at=turned_at))
     assert furthest.tolist() == near[1:2].tolist(), "where all are near, the furthest"
+
+
+def test_every_policy_leaves_the_echoes_of_places_where_it_turned():
+    """The base policy, flown alone, turned at one place until its battery was empty: there a belief learns no more."""
+    belief = fold(FIELD, TWO)
+    best = fisher(FIELD, belief, (0.0, 0.0))
+    other = fisher(replace(FIELD, turned_at=((best.x, best.y),)), belief, (0.0, 0.0))
+    assert math.hypot(other.x - best.x, other.y - best.y) >= OTHER_ECHOES_M
 
 
 def test_the_standoff_shrinks_until_two_places_are_left():
