@@ -52,7 +52,6 @@ FEWEST_DEAR_CELLS = COARSE_CELLS // 2
 DEEPEST_REFINEMENT = 16
 MOST_SHARP_CELLS = 512 * 512
 """Of a grid that must be fine since its bearings cross sharply; most of its cells are weighed in blocks."""
-NONE_SHARP = Crossings(np.empty(0), np.empty(0), np.empty(0))
 NO_MASS = 1e-16
 """Of a block: all that hold less hold nothing that a sum over the places would show."""
 LEAST_DENSITY = 1e-7
@@ -160,16 +159,16 @@ def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.Weigher)
     """All that is known weighed again on the belief's cells, cropped and refined."""
     sources = _sources(belief, weighing)
     sharp = crossings(belief.folded)
-    if _within(sharp, belief).resolved(belief.h):
-        sharp = NONE_SHARP
-    while not _within(sharp, belief).resolved(belief.h) and 4 * belief.density.size <= MOST_SHARP_CELLS:
-        belief = _refined(belief)
     belief, places = _weighed(belief, sources, sharp)
     belief = _cropped(belief)
     for _ in range(DEEPEST_REFINEMENT):
-        if not _coarse(belief):
+        most = MOST_SHARP_CELLS if places.parted else MOST_CELLS
+        if not _coarse(belief, most):
             break
-        belief, places = _weighed(_refined(belief), sources, sharp)
+        across, belief = 2.0 * _across(belief), _refined(belief)
+        while places.parted and across < 0.5 * COARSEST_CELLS and 4 * belief.density.size <= most:
+            across, belief = 2.0 * across, _refined(belief)
+        belief, places = _weighed(belief, sources, sharp)
         belief = _cropped(belief)
     return replace(belief, errors=tuple(_errors(one, places) for one in sources if one.bearings))
 
@@ -247,7 +246,7 @@ def _still_possible(grid: Nodes, before: SourceErrors | None) -> Nodes:
 
 
 def _weighed(
-    belief: JointBelief, sources: Sequence[_Source], sharp: Crossings = NONE_SHARP
+    belief: JointBelief, sources: Sequence[_Source], sharp: Crossings | None = None
 ) -> tuple[JointBelief, Places]:
     """The mass of each cell of the grid by all that is known, and the blocks of cells in which it was found."""
 
@@ -256,13 +255,8 @@ def _weighed(
         return sum((one.weigher.log(x, y) for one in sources), start=log)
 
     few = FEW_DEAR_CELLS if belief.stretches else FEW_CELLS
-    near = _within(sharp, belief)
-    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few, near if len(near.x) else None)
+    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few, sharp)
     return replace(belief, density=places.density), places
-
-
-def _within(sharp: Crossings, belief: JointBelief) -> Crossings:
-    return sharp.within(*belief.bounds)
 
 
 def _errors(source: _Source, places: Places) -> SourceErrors:
@@ -299,12 +293,18 @@ def _cropped(belief: JointBelief) -> JointBelief:
     )
 
 
-def _coarse(belief: JointBelief) -> bool:
-    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 0.95))
-    across, refined = max(x_max - x_min, y_max - y_min) / belief.h, 4 * belief.density.size
+def _coarse(belief: JointBelief, most: int) -> bool:
+    """most: cells that the refined grid may have."""
+    across, refined = _across(belief), 4 * belief.density.size
     if refined <= MANY_CELLS:
         return across < (FEWEST_DEAR_CELLS if belief.stretches else COARSE_CELLS) - 0.5
-    return across < COARSEST_CELLS - 0.5 and refined <= MOST_CELLS
+    return across < COARSEST_CELLS - 0.5 and refined <= most
+
+
+def _across(belief: JointBelief) -> float:
+    """Cells along the longer side of the 95 % region."""
+    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 0.95))
+    return max(x_max - x_min, y_max - y_min) / belief.h
 
 
 def _refined(belief: JointBelief) -> JointBelief:

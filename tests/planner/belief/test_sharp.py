@@ -14,13 +14,15 @@ from planner.types import Bearing, LinearMotion, Problem
 SIGMA = math.radians(2.0)
 
 
-def around(target: tuple[float, float], away_m: float, seed: int, count: int = 5) -> list[Bearing]:
+def around(
+    target: tuple[float, float], away_m: float, seed: int, count: int = 5, sigma: float = SIGMA
+) -> list[Bearing]:
     rng = np.random.default_rng(seed)
     found: list[Bearing] = []
     for k in range(count):
         turn = 2.0 * math.pi * k / count + rng.uniform(0.0, 1.0)
         x, y = target[0] + away_m * math.cos(turn), target[1] + away_m * math.sin(turn)
-        found.append(Bearing(x, y, turn + math.pi + rng.normal(0.0, SIGMA), SIGMA, source="craft"))
+        found.append(Bearing(x, y, turn + math.pi + rng.normal(0.0, sigma), sigma, source="craft"))
     return found
 
 
@@ -57,10 +59,35 @@ def test_every_two_bearings_cross_at_the_emitter_and_elsewhere_where_the_compass
 
 def test_bearings_that_do_not_cross_ask_for_nothing() -> None:
     north = Bearing(0.0, 0.0, math.pi / 2.0, SIGMA)
-    for bearings in ([], [north], [north, north]):
-        assert crossings(bearings).resolved(1e3)
+    for bearings in ([], [north], [north, north], [north, Bearing(0.0, 0.0, 1.0, SIGMA)]):
+        assert len(crossings(bearings).x) == 0
     parallel = [Bearing(0.0, y, 0.0, SIGMA) for y in (0.0, 50.0)]
     assert len(crossings(parallel).x) == 0
+
+
+@pytest.mark.parametrize(("half_m", "most"), [(2000.0, 10.0), (3000.0, 20.0)])
+def test_in_areas_of_kilometres_too(half_m: float, most: float) -> None:
+    """Of 0.3 degrees from 20 m away they stated 1114 and 2197 m; of 2 degrees from 60 m 3.8 and 5.7 m, where exact
+    sums on finer and finer cells leave 7.9 and 13.9: outliers far away count, too."""
+    target = tuple(np.random.default_rng(7).uniform(-half_m / 4.0, half_m / 4.0, 2).tolist())
+    problem, belief = searched(half_m, around(target, 20.0, 3, sigma=math.radians(0.3)))
+    assert stated(belief, estimate(belief, problem.estimator), 10.0).expected_rmse < 10.0
+    problem, belief = searched(half_m, around(target, 60.0, 3))
+    assert 6.0 < stated(belief, estimate(belief, problem.estimator), 10.0).expected_rmse < most
+
+
+@pytest.mark.parametrize(("half_m", "least", "most"), [(100.0, 0.2, 1.0), (500.0, 5.0, 15.0), (1000.0, 250.0, 400.0)])
+def test_bearings_from_next_to_the_emitter_cross_too(half_m: float, least: float, most: float) -> None:
+    """Of 2 degrees from 5 m away: 36, 378 and 758 m were stated where exact sums leave 0.4, 9.1 and 320."""
+    target = tuple(np.random.default_rng(7).uniform(-half_m / 4.0, half_m / 4.0, 2).tolist())
+    problem, belief = searched(half_m, around(target, 5.0, 3))
+    assert least < stated(belief, estimate(belief, problem.estimator), 10.0).expected_rmse < most
+
+
+def test_a_wide_belief_asks_for_no_finer_cells() -> None:
+    """Bearings of 10 degrees from 20 m away leave 1 km to the outliers, as coarse as any belief."""
+    _, belief = searched(1000.0, around((10.0, 20.0), 20.0, 3, sigma=math.radians(10.0)))
+    assert belief.density.size <= 40_000
 
 
 def test_cells_that_are_fine_enough_stay_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
