@@ -45,9 +45,7 @@ def prior_with_a_hole() -> FloatArray:
     return prior / prior.sum()
 
 
-@pytest.mark.parametrize(
-    ("away", "sigma"), [(6.0, math.radians(3.0)), (2.0, math.radians(6.0))]
-)
+@pytest.mark.parametrize(("away", "sigma"), [(6.0, math.radians(3.0)), (2.0, math.radians(6.0))])
 @pytest.mark.parametrize("few", [3000, 200])
 def test_a_cell_has_the_mean_likelihood_of_what_lies_in_it(away: float, sigma: float, few: int) -> None:
     """Cells of 1 m, 16 x 16 parts of each weighed: the centres alone are off by a tenth of all mass or more."""
