@@ -31,15 +31,23 @@ NEARLY_THE_SAME = 0.1
 """Total variation, and share of the mean distance: what cells in parts change by less stays as the centres have it."""
 
 
+class PartsOfCells(NamedTuple):
+    """x, y (p,) m ENU. prior: (p,) mass of each. All of a cell that has any."""
+
+    x: FloatArray
+    y: FloatArray
+    prior: FloatArray
+
+
 class Places(NamedTuple):
     """x, y (c,) of the blocks that were not split and of cells' parts, m ENU; their mass (c,), which sums to 1.
-    density: (ny, nx) the mass of the cells. parted: cells were weighed in parts."""
+    density: (ny, nx) the mass of the cells. parts: what cells were weighed in; None: their centres stand for all."""
 
     x: FloatArray
     y: FloatArray
     mass: FloatArray
     density: FloatArray
-    parted: bool = False
+    parts: PartsOfCells | None = None
 
 
 Weigh = Callable[[FloatArray, FloatArray], FloatArray]
@@ -108,7 +116,8 @@ def _with_parts(prior: FloatArray, log: FloatArray, found: Sequence[_Blocks], pa
     top = max(float(parts.log.max()), *(float(one.log.max()) for one in found))
     density = prior * np.exp(log - top)
     centres_alone = density / density.sum()
-    of_part = parts.share * prior[parts.rows, parts.columns][parts.of] * np.exp(parts.log - top)
+    weight = parts.share * prior[parts.rows, parts.columns][parts.of]
+    of_part = weight * np.exp(parts.log - top)
     density[parts.rows, parts.columns] = np.bincount(parts.of, of_part, len(parts.rows))
     density /= density.sum()
     if not _differ(centres_alone, density):
@@ -121,7 +130,7 @@ def _with_parts(prior: FloatArray, log: FloatArray, found: Sequence[_Blocks], pa
         masses.append(left * np.exp(one.log - top))
     mass = np.concatenate([*masses, of_part])
     x, y = np.concatenate([*(one.x for one in found), parts.x]), np.concatenate([*(one.y for one in found), parts.y])
-    return Places(x, y, mass / mass.sum(), density, parted=True)
+    return Places(x, y, mass / mass.sum(), density, PartsOfCells(parts.x, parts.y, weight))
 
 
 def _differ(some: FloatArray, others: FloatArray) -> bool:

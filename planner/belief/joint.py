@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from planner.belief import compiled_evidence, evidence
-from planner.belief.blocks import FEW_CELLS, FEW_DEAR_CELLS, Places, weighed_in_blocks
+from planner.belief.blocks import FEW_CELLS, FEW_DEAR_CELLS, PartsOfCells, Places, weighed_in_blocks
 from planner.belief.evidence import SMALLEST_SIGMA, sightings
 from planner.belief.grid import (
     COARSE_CELLS,
@@ -34,7 +34,7 @@ from planner.belief.source_errors import EVEN_STEP, ErrorPrior, Nodes, SourceErr
 from planner.detection import DetectionModel, Silence, silence_log_likelihood
 from planner.observation import validate_bearing
 from planner.on_the_way import Stretch
-from planner.types import Bearing, FloatArray, IntArray, Problem
+from planner.types import Bearing, FloatArray, Problem
 
 UNKNOWN_SOURCE = ErrorPrior()
 """What is assumed of a source of which nothing is known."""
@@ -67,7 +67,8 @@ class JointBelief(GridBelief):
     source's errors before the flight, by source; otherwise: of a source that is not named there. errors: what is known
     now of the errors of each source that took a bearing. silences: turns in which the emitter was not heard, and by
     what model of detection they count. stretches: of way on which it was heard. narrowed: the errors of sources of
-    which bearings of other emitters tell, too, on the grid on which they do (planner.belief.shared_source).
+    which bearings of other emitters tell, too, on the grid on which they do (planner.belief.shared_source). parts: in
+    which cells were weighed whose bearings cross within them.
     """
 
     prior: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
@@ -79,6 +80,7 @@ class JointBelief(GridBelief):
     detection: DetectionModel = UNKNOWN_EMITTER
     stretches: tuple[Stretch, ...] = ()
     narrowed: Mapping[str, Nodes] = field(default_factory=dict[str, Nodes])
+    parts: PartsOfCells | None = None
 
     def errors_of(self, source: str) -> SourceErrors | None:
         """None for a source that took no bearing."""
@@ -138,9 +140,9 @@ def _held_back(belief: JointBelief) -> bool:
     return False
 
 
-def log_prior(belief: JointBelief, rows: IntArray, columns: IntArray, x: FloatArray, y: FloatArray) -> FloatArray:
-    """(c,) what is known of cells, with their centres, besides the bearings: the prior's mass and what silence says."""
-    log = np.log(belief.prior[rows, columns])
+def log_prior(belief: JointBelief, mass: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
+    """(c,) what is known of places besides the bearings: the prior's mass and what silence says."""
+    log = np.log(mass)
     return log + silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else log
 
 
@@ -162,15 +164,16 @@ def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.Weigher)
     belief, places = _weighed(belief, sources, sharp)
     belief = _cropped(belief)
     for _ in range(DEEPEST_REFINEMENT):
-        most = MOST_SHARP_CELLS if places.parted else MOST_CELLS
+        most = MOST_SHARP_CELLS if places.parts is not None else MOST_CELLS
         if not _coarse(belief, most):
             break
         across, belief = 2.0 * _across(belief), _refined(belief)
-        while places.parted and across < 0.5 * COARSEST_CELLS and 4 * belief.density.size <= most:
+        while places.parts is not None and across < 0.5 * COARSEST_CELLS and 4 * belief.density.size <= most:
             across, belief = 2.0 * across, _refined(belief)
         belief, places = _weighed(belief, sources, sharp)
         belief = _cropped(belief)
-    return replace(belief, errors=tuple(_errors(one, places) for one in sources if one.bearings))
+    errors = tuple(_errors(one, places) for one in sources if one.bearings)
+    return replace(belief, errors=errors, parts=places.parts)
 
 
 def error_nodes(prior: ErrorPrior, taken: Sequence[Bearing], stretches: Sequence[Stretch]) -> Nodes:
@@ -196,17 +199,33 @@ def told_by(belief: JointBelief) -> dict[str, list[Bearing]]:
 
 
 def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """x, y (c,) of the cells, m ENU, and the logarithm of their probability by all that is known but what this source
-    told."""
-    rows, columns = np.nonzero(belief.prior)
-    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = log_prior(belief, rows, columns, x, y)
+    """x, y (c,) of the cells, or the parts in which they were weighed, m ENU, and the logarithm of their probability by
+    all that is known but what this source told."""
+    x, y, mass = _cells_and_parts(belief)
+    log = log_prior(belief, mass, x, y)
     for other, taken in told_by(belief).items():
         if other != source:
             stretches = belief.stretches_of(other)
             grid = error_nodes(belief.prior_of(other), taken, stretches)
             log = log + compiled_evidence.evidence(x, y, sightings(taken), grid, stretches).log
     return x, y, log
+
+
+def _cells_and_parts(belief: JointBelief) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """x, y (c,) m ENU and the prior's mass of each."""
+    whole = belief.prior > 0.0
+    if belief.parts is None:
+        inside, parts = np.zeros(0, dtype=bool), PartsOfCells(np.empty(0), np.empty(0), np.empty(0))
+    else:
+        parts = belief.parts
+        row, column = ((at - start) // belief.h for at, start in ((parts.y, belief.y0), (parts.x, belief.x0)))
+        inside = (row >= 0) & (row < belief.ny) & (column >= 0) & (column < belief.nx)
+        whole[row[inside].astype(int), column[inside].astype(int)] = False
+    rows, columns = np.nonzero(whole)
+    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
+    some = zip((x, y, belief.prior[rows, columns]), parts, strict=True)
+    x, y, mass = (np.concatenate([of_cells, of_parts[inside]]) for of_cells, of_parts in some)
+    return x, y, mass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

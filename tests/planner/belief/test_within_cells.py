@@ -55,7 +55,7 @@ def test_a_cell_has_the_mean_likelihood_of_what_lies_in_it(away: float, sigma: f
     y, x = (np.indices(fine.shape) + 0.5) / SIDE
     fine = fine * np.exp(log_of(bearings, x.ravel(), y.ravel())).reshape(fine.shape)
     exact = fine.reshape(CELLS, SIDE, CELLS, SIDE).sum(axis=(1, 3)) / fine.sum()
-    assert found.parted
+    assert found.parts is not None
     assert 0.5 * np.abs(found.density - exact).sum() < 0.05
     assert found.mass.sum() == pytest.approx(1.0) == found.density.sum()
     fine /= fine.sum()
