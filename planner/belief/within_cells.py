@@ -53,7 +53,7 @@ def in_parts(
     ny, nx = prior.shape
     near = sharp.within(x0, y0, x0 + nx * h, y0 + ny * h)
     near = near.only(near.width < CELLS_A_WIDTH * h)
-    row, column = ((near.y - y0) / h).astype(int), ((near.x - x0) / h).astype(int)
+    row, column = _cells_of(near, x0, y0, h, prior.shape)
     possible = prior[row, column] > 0.0
     near, row, column = near.only(possible), row[possible], column[possible]
     if len(row) == 0:
@@ -83,7 +83,7 @@ def _parted(
 ) -> Parts:
     """narrow: (m,) m, what the bearings leave of each crossing."""
     ny, nx = prior.shape
-    cells = _around(((near.y - y0) / h).astype(int), ((near.x - x0) / h).astype(int), prior.shape)
+    cells = _around(*_cells_of(near, x0, y0, h, prior.shape), prior.shape)
     cells = cells[prior.ravel()[cells] > 0.0]
     split, side, level = cells, h, 0
     leaves: list[tuple[FloatArray, FloatArray, FloatArray, IntArray]] = []
@@ -93,9 +93,8 @@ def _parted(
         parent = np.stack(np.divmod(split, shape[1] // 2), axis=1)
         row, column = (2 * parent[:, None, :] + PARTS).reshape(-1, 2).T
         parts = row * shape[1] + column
-        wide = narrow < CELLS_A_WIDTH * side
-        open_ = near.only(wide)
-        again = _around(((open_.y - y0) / side).astype(int), ((open_.x - x0) / side).astype(int), shape)
+        within = near.only(narrow < CELLS_A_WIDTH * side)
+        again = _around(*_cells_of(within, x0, y0, side, shape), shape)
         left = ~np.isin(parts, again)
         split = parts[~left]
         row, column = row[left], column[left]
@@ -103,6 +102,12 @@ def _parted(
         leaves.append((x, y, np.full(len(x), 0.25**level), (row >> level) * nx + (column >> level)))
     x, y, share, cell = (np.concatenate(some) for some in zip(*leaves, strict=True))
     return Parts(cells // nx, cells % nx, np.searchsorted(cells, cell), x, y, share, weigh(x, y))
+
+
+def _cells_of(near: Crossings, x0: float, y0: float, side: float, shape: tuple[int, int]) -> tuple[IntArray, IntArray]:
+    """Rows and columns (m,) of the cells that hold them. One at the grid's far edge may round to beyond it."""
+    row, column = ((near.y - y0) / side).astype(int), ((near.x - x0) / side).astype(int)
+    return np.minimum(row, shape[0] - 1), np.minimum(column, shape[1] - 1)
 
 
 def _around(row: IntArray, column: IntArray, shape: tuple[int, int]) -> IntArray:

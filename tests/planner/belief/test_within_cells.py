@@ -76,3 +76,20 @@ def test_where_crossings_tell_nothing_cells_stay_whole() -> None:
 
     for sharp in (nothing, wide, excluded):
         assert in_parts(prior, np.zeros(prior.shape), 0.0, 0.0, 1.0, far, sharp) is None
+
+
+def test_a_crossing_at_the_far_edge_lies_in_the_last_cell() -> None:
+    """South of the edge, but by less than its distance from the corner can tell."""
+    prior = np.full((100, 100), 1e-4)
+    at = np.array([np.nextafter(3000.0, 0.0)])
+    found = in_parts(
+        prior,
+        np.zeros(prior.shape),
+        -3000.0,
+        -3000.0,
+        60.0,
+        lambda x, _: np.full(len(x), 9.0),
+        Crossings(at, at, at / 600.0, 2),
+    )
+    assert found is not None
+    assert found.rows.max() == found.columns.max() == 99
