@@ -165,10 +165,11 @@ def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.Weigher)
     belief = _cropped(belief)
     for _ in range(DEEPEST_REFINEMENT):
         most = MOST_SHARP_CELLS if places.parts is not None else MOST_CELLS
-        if not _coarse(belief, most):
+        across = _across(belief)
+        if not _coarse(belief, across, most):
             break
-        across, belief = 2.0 * _across(belief), _refined(belief)
-        while places.parts is not None and across < 0.5 * COARSEST_CELLS and 4 * belief.density.size <= most:
+        belief = _refined(belief)
+        while places.parts is not None and 4.0 * across < COARSEST_CELLS and 4 * belief.density.size <= most:
             across, belief = 2.0 * across, _refined(belief)
         belief, places = _weighed(belief, sources, sharp)
         belief = _cropped(belief)
@@ -213,14 +214,11 @@ def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatA
 
 def _cells_and_parts(belief: JointBelief) -> tuple[FloatArray, FloatArray, FloatArray]:
     """x, y (c,) m ENU and the prior's mass of each."""
+    parts = belief.parts or PartsOfCells(*np.empty((3, 0)))
+    row, column = ((at - start) // belief.h for at, start in ((parts.y, belief.y0), (parts.x, belief.x0)))
+    inside = (row >= 0) & (row < belief.ny) & (column >= 0) & (column < belief.nx)
     whole = belief.prior > 0.0
-    if belief.parts is None:
-        inside, parts = np.zeros(0, dtype=bool), PartsOfCells(np.empty(0), np.empty(0), np.empty(0))
-    else:
-        parts = belief.parts
-        row, column = ((at - start) // belief.h for at, start in ((parts.y, belief.y0), (parts.x, belief.x0)))
-        inside = (row >= 0) & (row < belief.ny) & (column >= 0) & (column < belief.nx)
-        whole[row[inside].astype(int), column[inside].astype(int)] = False
+    whole[row[inside].astype(int), column[inside].astype(int)] = False
     rows, columns = np.nonzero(whole)
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
     some = zip((x, y, belief.prior[rows, columns]), parts, strict=True)
@@ -312,9 +310,9 @@ def _cropped(belief: JointBelief) -> JointBelief:
     )
 
 
-def _coarse(belief: JointBelief, most: int) -> bool:
-    """most: cells that the refined grid may have."""
-    across, refined = _across(belief), 4 * belief.density.size
+def _coarse(belief: JointBelief, across: float, most: int) -> bool:
+    """across: cells along the 95 % region. most: cells that the refined grid may have."""
+    refined = 4 * belief.density.size
     if refined <= MANY_CELLS:
         return across < (FEWEST_DEAR_CELLS if belief.stretches else COARSE_CELLS) - 0.5
     return across < COARSEST_CELLS - 0.5 and refined <= most
