@@ -113,7 +113,7 @@ class _Blocks(NamedTuple):
 
 def _with_parts(prior: FloatArray, log: FloatArray, found: Sequence[_Blocks], parts: Parts) -> Places | None:
     """The cells in parts have the sum of those, and are no longer in their blocks. None: nothing changes."""
-    top = max(float(parts.log.max()), *(float(one.log.max()) for one in found))
+    top = float(np.concatenate([parts.log, *(one.log for one in found)]).max())
     density = prior * np.exp(log - top)
     centres_alone = density / density.sum()
     weight = parts.share * prior[parts.rows, parts.columns][parts.of]

@@ -93,3 +93,13 @@ def test_a_crossing_at_the_far_edge_lies_in_the_last_cell() -> None:
     )
     assert found is not None
     assert found.rows.max() == found.columns.max() == 99
+
+
+def test_parts_of_a_prior_of_which_every_block_was_split() -> None:
+    """As legs leave it, which weigh no cells that hold next to nothing."""
+    prior = np.zeros((CELLS, CELLS))
+    prior[22:28, 28:34] = 1.0 / 36.0
+    bearings = around((31.37, 24.81), 2.0, math.radians(6.0))
+    found = weighed_in_blocks(prior, 0.0, 0.0, 1.0, lambda x, y: log_of(bearings, x, y), 200, crossings(bearings))
+    assert found.parts is not None
+    assert found.mass.sum() == pytest.approx(1.0) == found.density.sum()
