@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from planner.belief import compiled_evidence, evidence
-from planner.belief.blocks import FEW_CELLS, FEW_DEAR_CELLS, Places, weighed_in_blocks
+from planner.belief.blocks import FEW_CELLS, FEW_DEAR_CELLS, PartsOfCells, Places, weighed_in_blocks
 from planner.belief.evidence import SMALLEST_SIGMA, sightings
 from planner.belief.grid import (
     COARSE_CELLS,
@@ -34,7 +34,7 @@ from planner.belief.source_errors import EVEN_STEP, ErrorPrior, Nodes, SourceErr
 from planner.detection import DetectionModel, Silence, silence_log_likelihood
 from planner.observation import validate_bearing
 from planner.on_the_way import Stretch
-from planner.types import Bearing, FloatArray, IntArray, Problem
+from planner.types import Bearing, FloatArray, Problem
 
 UNKNOWN_SOURCE = ErrorPrior()
 """What is assumed of a source of which nothing is known."""
@@ -52,7 +52,6 @@ FEWEST_DEAR_CELLS = COARSE_CELLS // 2
 DEEPEST_REFINEMENT = 16
 MOST_SHARP_CELLS = 512 * 512
 """Of a grid that must be fine since its bearings cross sharply; most of its cells are weighed in blocks."""
-NONE_SHARP = Crossings(np.empty(0), np.empty(0), np.empty(0))
 NO_MASS = 1e-16
 """Of a block: all that hold less hold nothing that a sum over the places would show."""
 LEAST_DENSITY = 1e-7
@@ -68,7 +67,8 @@ class JointBelief(GridBelief):
     source's errors before the flight, by source; otherwise: of a source that is not named there. errors: what is known
     now of the errors of each source that took a bearing. silences: turns in which the emitter was not heard, and by
     what model of detection they count. stretches: of way on which it was heard. narrowed: the errors of sources of
-    which bearings of other emitters tell, too, on the grid on which they do (planner.belief.shared_source).
+    which bearings of other emitters tell, too, on the grid on which they do (planner.belief.shared_source). parts: in
+    which cells were weighed whose bearings cross within them.
     """
 
     prior: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
@@ -80,6 +80,7 @@ class JointBelief(GridBelief):
     detection: DetectionModel = UNKNOWN_EMITTER
     stretches: tuple[Stretch, ...] = ()
     narrowed: Mapping[str, Nodes] = field(default_factory=dict[str, Nodes])
+    parts: PartsOfCells | None = None
 
     def errors_of(self, source: str) -> SourceErrors | None:
         """None for a source that took no bearing."""
@@ -139,9 +140,9 @@ def _held_back(belief: JointBelief) -> bool:
     return False
 
 
-def log_prior(belief: JointBelief, rows: IntArray, columns: IntArray, x: FloatArray, y: FloatArray) -> FloatArray:
-    """(c,) what is known of cells, with their centres, besides the bearings: the prior's mass and what silence says."""
-    log = np.log(belief.prior[rows, columns])
+def log_prior(belief: JointBelief, mass: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
+    """(c,) what is known of places besides the bearings: the prior's mass and what silence says."""
+    log = np.log(mass)
     return log + silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else log
 
 
@@ -160,18 +161,20 @@ def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.Weigher)
     """All that is known weighed again on the belief's cells, cropped and refined."""
     sources = _sources(belief, weighing)
     sharp = crossings(belief.folded)
-    if _within(sharp, belief).resolved(belief.h):
-        sharp = NONE_SHARP
-    while not _within(sharp, belief).resolved(belief.h) and 4 * belief.density.size <= MOST_SHARP_CELLS:
-        belief = _refined(belief)
     belief, places = _weighed(belief, sources, sharp)
     belief = _cropped(belief)
     for _ in range(DEEPEST_REFINEMENT):
-        if not _coarse(belief):
+        most = MOST_SHARP_CELLS if places.parts is not None else MOST_CELLS
+        across = _across(belief)
+        if not _coarse(belief, across, most):
             break
-        belief, places = _weighed(_refined(belief), sources, sharp)
+        belief = _refined(belief)
+        while places.parts is not None and 4.0 * across < COARSEST_CELLS and 4 * belief.density.size <= most:
+            across, belief = 2.0 * across, _refined(belief)
+        belief, places = _weighed(belief, sources, sharp)
         belief = _cropped(belief)
-    return replace(belief, errors=tuple(_errors(one, places) for one in sources if one.bearings))
+    errors = tuple(_errors(one, places) for one in sources if one.bearings)
+    return replace(belief, errors=errors, parts=places.parts)
 
 
 def error_nodes(prior: ErrorPrior, taken: Sequence[Bearing], stretches: Sequence[Stretch]) -> Nodes:
@@ -197,17 +200,30 @@ def told_by(belief: JointBelief) -> dict[str, list[Bearing]]:
 
 
 def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """x, y (c,) of the cells, m ENU, and the logarithm of their probability by all that is known but what this source
-    told."""
-    rows, columns = np.nonzero(belief.prior)
-    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = log_prior(belief, rows, columns, x, y)
+    """x, y (c,) of the cells, or the parts in which they were weighed, m ENU, and the logarithm of their probability by
+    all that is known but what this source told."""
+    x, y, mass = _cells_and_parts(belief)
+    log = log_prior(belief, mass, x, y)
     for other, taken in told_by(belief).items():
         if other != source:
             stretches = belief.stretches_of(other)
             grid = error_nodes(belief.prior_of(other), taken, stretches)
             log = log + compiled_evidence.evidence(x, y, sightings(taken), grid, stretches).log
     return x, y, log
+
+
+def _cells_and_parts(belief: JointBelief) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """x, y (c,) m ENU and the prior's mass of each."""
+    parts = belief.parts or PartsOfCells(*np.empty((3, 0)))
+    row, column = ((at - start) // belief.h for at, start in ((parts.y, belief.y0), (parts.x, belief.x0)))
+    inside = (row >= 0) & (row < belief.ny) & (column >= 0) & (column < belief.nx)
+    whole = belief.prior > 0.0
+    whole[row[inside].astype(int), column[inside].astype(int)] = False
+    rows, columns = np.nonzero(whole)
+    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
+    some = zip((x, y, belief.prior[rows, columns]), parts, strict=True)
+    x, y, mass = (np.concatenate([of_cells, of_parts[inside]]) for of_cells, of_parts in some)
+    return x, y, mass
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -247,7 +263,7 @@ def _still_possible(grid: Nodes, before: SourceErrors | None) -> Nodes:
 
 
 def _weighed(
-    belief: JointBelief, sources: Sequence[_Source], sharp: Crossings = NONE_SHARP
+    belief: JointBelief, sources: Sequence[_Source], sharp: Crossings | None = None
 ) -> tuple[JointBelief, Places]:
     """The mass of each cell of the grid by all that is known, and the blocks of cells in which it was found."""
 
@@ -256,13 +272,8 @@ def _weighed(
         return sum((one.weigher.log(x, y) for one in sources), start=log)
 
     few = FEW_DEAR_CELLS if belief.stretches else FEW_CELLS
-    near = _within(sharp, belief)
-    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few, near if len(near.x) else None)
+    places = weighed_in_blocks(belief.prior, belief.x0, belief.y0, belief.h, weigh, few, sharp)
     return replace(belief, density=places.density), places
-
-
-def _within(sharp: Crossings, belief: JointBelief) -> Crossings:
-    return sharp.within(*belief.bounds)
 
 
 def _errors(source: _Source, places: Places) -> SourceErrors:
@@ -299,12 +310,18 @@ def _cropped(belief: JointBelief) -> JointBelief:
     )
 
 
-def _coarse(belief: JointBelief) -> bool:
-    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 0.95))
-    across, refined = max(x_max - x_min, y_max - y_min) / belief.h, 4 * belief.density.size
+def _coarse(belief: JointBelief, across: float, most: int) -> bool:
+    """across: cells along the 95 % region. most: cells that the refined grid may have."""
+    refined = 4 * belief.density.size
     if refined <= MANY_CELLS:
         return across < (FEWEST_DEAR_CELLS if belief.stretches else COARSE_CELLS) - 0.5
-    return across < COARSEST_CELLS - 0.5 and refined <= MOST_CELLS
+    return across < COARSEST_CELLS - 0.5 and refined <= most
+
+
+def _across(belief: JointBelief) -> float:
+    """Cells along the longer side of the 95 % region."""
+    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 0.95))
+    return max(x_max - x_min, y_max - y_min) / belief.h
 
 
 def _refined(belief: JointBelief) -> JointBelief:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from planner.belief.evidence import SMALLEST_SIGMA
-from planner.types import Bearing, FloatArray
+from planner.types import Bearing, BoolArray, FloatArray
 
 MOST_BEARINGS = 12
 """The last ones, of which every two are crossed."""
@@ -20,25 +20,26 @@ TURNS = np.deg2rad(np.arange(-20.0, 20.5, 1.0))
 """rad, what the compass of all may be off by: two standard deviations of the worst."""
 CELLS_A_WIDTH = 0.4
 """A crossing of bearings is resolved where their standard deviation is at least so many cells wide."""
-APART_M = 15.0
-"""Two bearings from nearer to each other cross next to their places, whatever they see."""
+APART_M = 1.0
+"""Two bearings from nearer to each other are taken from one place."""
 
 
 class Crossings(NamedTuple):
-    """x, y: (m,) m ENU. width: (m,) m, standard deviation of the narrower of the two bearings there."""
+    """x, y: (m,) m ENU. width: (m,) m, standard deviation of the narrower of the two bearings there. bearings: how many
+    there are in all."""
 
     x: FloatArray
     y: FloatArray
     width: FloatArray
+    bearings: int
+
+    def only(self, which: BoolArray) -> Crossings:
+        """These of them."""
+        return self._replace(x=self.x[which], y=self.y[which], width=self.width[which])
 
     def within(self, x0: float, y0: float, x1: float, y1: float) -> Crossings:
         """Those in a rectangle, m ENU."""
-        inside = (self.x > x0) & (self.x < x1) & (self.y > y0) & (self.y < y1)
-        return Crossings(self.x[inside], self.y[inside], self.width[inside])
-
-    def resolved(self, h: float) -> bool:
-        """Half of them or more, by cells of h m: some lie next to a place and are narrower than any cell."""
-        return len(self.width) == 0 or h * CELLS_A_WIDTH <= float(np.median(self.width))
+        return self.only((self.x > x0) & (self.x < x1) & (self.y > y0) & (self.y < y1))
 
 
 def crossings(bearings: Sequence[Bearing]) -> Crossings:
@@ -60,4 +61,4 @@ def crossings(bearings: Sequence[Bearing]) -> Crossings:
         ahead = (s > 0.0) & (t > 0.0)
         found = place[first][:, None, :] + s[..., None] * d1
         width = np.minimum(s * sigma[first][:, None], t * sigma[second][:, None])
-    return Crossings(found[ahead][:, 0], found[ahead][:, 1], width[ahead])
+    return Crossings(found[ahead][:, 0], found[ahead][:, 1], width[ahead], len(bearings))

@@ -58,7 +58,7 @@ def each_by_node(belief, source, grid):
     """(c, k, e, b) p(x) p(bearings | x, errors), node by node with the plain sums; other sources summed over theirs."""
     rows, columns = np.nonzero(belief.prior)
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = np.exp(log_prior(belief, rows, columns, x, y))
+    log = np.exp(log_prior(belief, belief.prior[rows, columns], x, y))
     one = np.ones(1)
     found = np.empty((len(x), *grid.weight.shape))
     own = sightings([b for b in belief.folded if b.source == source])
@@ -300,7 +300,7 @@ def test_stretches_of_way_tell_of_the_compass_as_bearings_do():
     grid = common_nodes([belief], "craft")
     rows, columns = np.nonzero(belief.prior)
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = log_prior(belief, rows, columns, x, y)
+    log = log_prior(belief, belief.prior[rows, columns], x, y)
     seen = sightings(belief.folded)
     fast = node_evidence(belief, "craft", grid)
     plain = evidence.node_evidence(x, y, log, seen, grid, belief.stretches)
