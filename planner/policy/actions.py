@@ -15,7 +15,7 @@ from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
 from planner.geometry import bounds, centres, distance_to_convex
 from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
-from planner.types import FloatArray, PlannerError, Problem
+from planner.types import BoolArray, FloatArray, PlannerError, Problem
 
 MOST_PLACES = 20_000
 """A finer lattice is refused: no budget could tell its places apart, and no map could show them."""
@@ -81,8 +81,13 @@ def without_refused(
 
 def with_own_echoes(places: FloatArray, problem: Problem) -> FloatArray:
     """(n, 2) m: those at least OTHER_ECHOES_M from where a turn was made already; where none is, the farthest."""
+    return places[own_echoes(places, problem)]
+
+
+def own_echoes(places: FloatArray, problem: Problem) -> BoolArray:
+    """(n,) which of the places (n, 2), m, `with_own_echoes` keeps; at least one."""
     away = _from_nearest(places, problem.turned_at)
-    return places[away >= min(OTHER_ECHOES_M, away.max(initial=0.0))]
+    return np.asarray(away >= min(OTHER_ECHOES_M, away.max(initial=0.0)))
 
 
 def _from_nearest(places: FloatArray, others: Sequence[tuple[float, float]]) -> FloatArray:
