@@ -44,12 +44,13 @@ def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
 def constrained_actions(problem: Problem, belief: GridBelief, usable: Usable | None = None) -> FloatArray:
     """(n, 2) m: the action space without the places nearer than r_min to C95, and without those that cross too little.
 
-    When fewer than two would be left, r_min shrinks until two are (6.1). usable: among which places the widest crossing
-    is looked for, where one is asked for.
+    When fewer than two would be left, r_min shrinks until two are (6.1). usable: among which places that is, and the
+    widest crossing is looked for, where one is asked for.
     """
     places = action_space(problem, belief)
+    if usable is not None:
+        places = usable(places)
     if problem.crossing is not None:
-        places = places if usable is None else usable(places)
         places = places[problem.crossing.crossed_from(places)]
     standoff = standoff_from(belief, problem)
     if standoff <= 0 or len(places) == 0:
