@@ -26,10 +26,11 @@ def density(log_likelihood: tuple[float, ...], least_sigma: float) -> FloatArray
     """(m,) a radian at the angles 2 pi k / m ccw from east, summing to m / (2 pi).
 
     log_likelihood: (m,) natural log there, any offset. One that is sharper than N(0, least_sigma^2) is convolved with
-    that; rad.
+    what it lacks of that; rad.
     """
     found = _normalized(_kept(log_likelihood))
-    return _blurred(found, least_sigma) if width(found) < least_sigma else found
+    sharp = width(found)
+    return _blurred(found, math.sqrt(least_sigma**2 - sharp**2)) if sharp < least_sigma else found
 
 
 def width(density: FloatArray) -> float:

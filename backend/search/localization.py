@@ -157,17 +157,15 @@ class Localization:
         return found
 
     def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
-        """Bearing by bearing, in order: what was folded for one bearing less is gone on from. One thread at a time:
+        """Bearing by bearing, in order: what was folded for fewer bearings is gone on from. One thread at a time:
         beliefs of emitters that share a source's errors ask for each other."""
-        if not bearings:
-            return self.prior
         with self._folding:
-            found = self._folds.get(bearings)
-            if found is None:
-                before = self._folded(bearings[:-1])
-                found = self._with(before, bearings)
+            known = next((k for k in range(len(bearings), 0, -1) if bearings[:k] in self._folds), 0)
+            found = self._folds[bearings[:known]] if known else self.prior
+            for count in range(known + 1, len(bearings) + 1):
+                found = self._with(found, bearings[:count])
                 _make_room(self._folds)
-                self._folds[bearings] = found
+                self._folds[bearings[:count]] = found
             return found
 
     def _with(self, before: GridBelief, bearings: tuple[Bearing, ...]) -> GridBelief:

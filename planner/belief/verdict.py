@@ -12,6 +12,7 @@ from planner.belief.estimate import estimate, mass_within, radius_of
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief, corrected
 from planner.belief.moving import MovingBelief, corrected_moving, where_it_may_be
+from planner.belief.same_place import by_place
 from planner.belief.seen_on_the_way import SeenFrom, seen_on_the_way
 from planner.crossing import Crossing
 from planner.geometry import clip_wedge, validate_area
@@ -71,7 +72,7 @@ def verdict(
         *_place_reasons(rule, said, seen),
         *_angle_reasons(rule, seen, spread.x, spread.y),
     ]
-    if against_it and len(seen) < max(3, 2 * against_it):
+    if _outvoted(belief, bearings, spread, ways):
         reasons.append(EstimateContradicted(against_it, len(said)))
     elif not wedges_meet(area, _towards(supporting, spread)):
         reasons.append(disagreement(len(supporting)))
@@ -101,6 +102,20 @@ def _as_read(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) 
 
 def _supporting(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) -> list[Bearing]:
     return [b for b in bearings if points_at(b, spread.x, spread.y) and _tells(belief, b)]
+
+
+def _outvoted(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate, ways: Sequence[SeenFrom]) -> bool:
+    """Whether fewer than three speak for the estimate, or not twice as many as speak against it. To a joint belief the
+    bearings from one place are one, which speaks as most of them do: an echo is heard as often as one listens there."""
+    places = by_place(bearings) if isinstance(belief, JointBelief) else [[bearing] for bearing in bearings]
+    seeing = [[points_at(b, spread.x, spread.y) for b in there] for there in places]
+    telling = sum(
+        2 * sum(see) >= len(see) and _tells(belief, there[0]) for see, there in zip(seeing, places, strict=True)
+    )
+    against = sum(2 * sum(see) <= len(see) for see in seeing)
+    for one in ways:
+        telling, against = telling + one.sees, against + one.against
+    return telling < max(3, 2 * against) and against > 0
 
 
 def _ways(rule: LocalizationRule, belief: GridBelief, spread: Estimate) -> tuple[SeenFrom, ...]:

@@ -15,7 +15,7 @@ from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
 from planner.geometry import bounds, centres, distance_to_convex
 from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
-from planner.types import FloatArray, PlannerError, Problem
+from planner.types import BoolArray, FloatArray, PlannerError, Problem
 
 MOST_PLACES = 20_000
 """A finer lattice is refused: no budget could tell its places apart, and no map could show them."""
@@ -44,18 +44,18 @@ def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
 def constrained_actions(problem: Problem, belief: GridBelief, usable: Usable | None = None) -> FloatArray:
     """(n, 2) m: the action space without the places nearer than r_min to C95, and without those that cross too little.
 
-    When fewer than two would be left, r_min shrinks until two are (6.1). usable: among which places the widest crossing
-    is looked for, where one is asked for; None: nothing but these constraints and its own echoes is asked of a place.
+    When fewer than two would be left, r_min shrinks until two are (6.1). usable: among which places that is, and the
+    widest crossing is looked for, where one is asked for; None: all that have echoes of their own.
     """
     places = action_space(problem, belief)
+    places = with_own_echoes(places, problem) if usable is None else usable(places)
     if problem.crossing is not None:
-        places = with_own_echoes(places, problem) if usable is None else usable(places)
         places = places[problem.crossing.crossed_from(places)]
     standoff = standoff_from(belief, problem)
-    if standoff > 0 and len(places) > 0:
-        clearance = distance_to_convex(places, confidence_region(belief))
-        places = places[clearance >= min(standoff, np.sort(clearance)[-min(2, len(clearance))])]
-    return with_own_echoes(places, problem) if usable is None else places
+    if standoff <= 0 or len(places) == 0:
+        return places
+    clearance = distance_to_convex(places, confidence_region(belief))
+    return places[clearance >= min(standoff, np.sort(clearance)[-min(2, len(clearance))])]
 
 
 def standoff_from(belief: GridBelief, problem: Problem) -> float:
@@ -81,8 +81,13 @@ def without_refused(
 
 def with_own_echoes(places: FloatArray, problem: Problem) -> FloatArray:
     """(n, 2) m: those at least OTHER_ECHOES_M from where a turn was made already; where none is, the farthest."""
+    return places[own_echoes(places, problem)]
+
+
+def own_echoes(places: FloatArray, problem: Problem) -> BoolArray:
+    """(n,) which of the places (n, 2), m, `with_own_echoes` keeps; at least one."""
     away = _from_nearest(places, problem.turned_at)
-    return places[away >= min(OTHER_ECHOES_M, away.max(initial=0.0))]
+    return np.asarray(away >= min(OTHER_ECHOES_M, away.max(initial=0.0)))
 
 
 def _from_nearest(places: FloatArray, others: Sequence[tuple[float, float]]) -> FloatArray:

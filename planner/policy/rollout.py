@@ -141,8 +141,8 @@ def claim_after(
     """
 
     def left(places: FloatArray) -> FloatArray:
-        allowed = with_own_echoes(without_refused(places, without, problem, belief), problem)
-        return far_enough(problem, simulation.platform, allowed)
+        allowed = far_enough(problem, simulation.platform, without_refused(places, without, problem, belief))
+        return with_own_echoes(allowed, problem)
 
     return claim_ahead(
         problem,
@@ -238,20 +238,24 @@ class Rollout:
     def _places(
         self, problem: Problem, belief: GridBelief, simulation: Simulation, program: ProgramTable | None
     ) -> FloatArray:
+        def flown_to(places: FloatArray) -> FloatArray:
+            return far_enough(problem, simulation.platform, without_refused(places, self.without, problem, belief))
+
         def left(places: FloatArray) -> FloatArray:
-            allowed = with_own_echoes(without_refused(places, self.without, problem, belief), problem)
-            return far_enough(problem, simulation.platform, allowed)
+            return with_own_echoes(flown_to(places), problem)
 
         def reached(places: FloatArray) -> FloatArray:
             return places[np.isfinite(simulation.first_actions(places).costs)]
+
+        def left_in_reach(places: FloatArray) -> FloatArray:
+            return with_own_echoes(reached(flown_to(places)), problem)
 
         places = left(self._allowed(problem, belief, simulation, program, left))
         if len(places) == 0:
             raise PlannerError(EveryPlaceRefused())
         reachable = reached(places)
-        if len(reachable) == 0 and problem.crossing is not None:  # the ways to all places take a while to find
-            places = self._allowed(problem, belief, simulation, program, lambda some: reached(left(some)))
-            reachable = reached(left(places))
+        if len(reachable) == 0:  # the ways to all places take a while to find
+            reachable = left_in_reach(self._allowed(problem, belief, simulation, program, left_in_reach))
         if len(reachable) == 0:
             raise PlannerError(NoPlaceInReach())
         return telling_places(problem, belief, reachable, TELLING_SHARE)

@@ -26,7 +26,7 @@ from planner.belief.joint import JointBelief
 from planner.geometry import distance_to_convex
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, PlannerOptions
-from planner.policy.actions import action_space, standoff_from, with_own_echoes, without_refused
+from planner.policy.actions import action_space, own_echoes, standoff_from, without_refused
 from planner.policy.dynamic_program import stands_on
 from planner.policy.fisher import first_best, fisher, gain_beside_bias, information_gain
 from planner.policy.importance import mean_time, weights_of
@@ -294,7 +294,7 @@ def telling_beside_bias(problem: Problem, belief: GridBelief, places: FloatArray
     """(n,) which places (n, 2) tell the bias of the bearings from the place of the emitter.
 
     Rollouts take the bearings to come as independent, so that a craft which stays where it is would seem to halve an
-    error that it only measures again. The bias is that of the source with the most bearings.
+    error that it only measures again, or the same echoes. The bias is that of the source with the most bearings.
     """
     wanted = Wanted(problem, belief)
     return _telling(wanted, _gains(wanted, estimate(belief, problem.estimator), places), places)
@@ -310,20 +310,23 @@ def _gains(wanted: Wanted, estimated: Estimate, places: FloatArray) -> FloatArra
 
 
 def _telling(wanted: Wanted, gains: FloatArray, places: FloatArray) -> BoolArray:
-    crossing = wanted.problem.crossing
-    crossed = np.ones(len(gains), dtype=bool) if crossing is None else crossing.crossed_from(places)
+    problem, telling = wanted.problem, own_echoes(places, wanted.problem)
+    if problem.crossing is not None:
+        telling[telling] = problem.crossing.crossed_from(places[telling])
     if not isinstance(wanted.belief, JointBelief) or not wanted.belief.errors:
-        return crossed
-    return np.asarray(crossed & (gains >= TELLING_SHARE * gains[crossed].max()))
+        return telling
+    return np.asarray(telling & (gains >= TELLING_SHARE * gains[telling].max()))
 
 
 def _detour(wanted: Wanted, gains: FloatArray, places: FloatArray) -> tuple[float, float]:
-    """Of the places (n, 2) with these gains (n,), the one that tells most of this emitter, r_min off its C95 (6.1)."""
+    """Of the places (n, 2) of these gains (n,) with echoes of their own, the best one r_min off its C95 (6.1)."""
+    own = own_echoes(places, wanted.problem)
+    places, gains = places[own], gains[own]
     clearance = distance_to_convex(places, confidence_region(wanted.belief))
     standoff = standoff_from(wanted.belief, wanted.problem)
     far = clearance >= min(standoff, float(np.sort(clearance)[-min(2, len(clearance))]))
-    best = first_best(np.where(far, gains, 0.0))
-    return float(places[best, 0]), float(places[best, 1])
+    x, y = places[first_best(np.where(far, gains, 0.0))].tolist()
+    return x, y
 
 
 FEWEST_PATHS = 250
@@ -350,9 +353,9 @@ def standoff_among(problem: Problem, places: int, emitters: int) -> float:
 
 
 def _places(wanted: Sequence[Wanted], simulation: Simulation, without: Sequence[tuple[float, float]]) -> FloatArray:
-    """(n, 2) m: wherever the platform may measure and can get to."""
+    """(n, 2) m: wherever the platform may measure and can get to. Echoes are each emitter's own (`_telling`)."""
     problem, belief = wanted[0].problem, wanted[0].belief
-    places = with_own_echoes(without_refused(action_space(problem, belief), without, problem, belief), problem)
+    places = without_refused(action_space(problem, belief), without, problem, belief)
     if len(places) == 0:
         raise PlannerError(EveryPlaceRefused())
     reachable = np.isfinite(simulation.first_actions(places).costs)

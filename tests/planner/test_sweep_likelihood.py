@@ -35,6 +35,11 @@ def test_one_that_is_sharper_than_any_bearing_is_made_as_wide_as_the_best() -> N
     assert width(density(normal(1.0, 0.2), NO_LESS)) == pytest.approx(math.radians(1.0), rel=0.1)
 
 
+def test_one_that_is_a_little_sharper_is_hardly_widened() -> None:
+    for sigma_deg in (0.9, 0.97):
+        assert width(density(normal(1.0, sigma_deg), NO_LESS)) == pytest.approx(math.radians(1.0), rel=0.1)
+
+
 def test_two_peaks_keep_their_weights_and_a_flat_one_says_nothing_at_any_scale() -> None:
     both = np.logaddexp(normal(0.5, 6.0), np.array(normal(2.5, 6.0)) + math.log(0.25))
     found = density(tuple(both.tolist()), NO_LESS)

@@ -29,9 +29,9 @@ from backend.spec import (
     UniformPriorSpec,
 )
 from hardware.readings import Place
-from planner.belief.grid import digest
+from planner.belief.grid import GridBelief, digest
 from planner.reasons import ExpectedErrorTooLarge, PriorOutsideArea
-from planner.types import GaussianPrior, RingPrior
+from planner.types import Bearing, GaussianPrior, RingPrior
 
 UNIFORM = UniformPriorSpec()
 
@@ -250,3 +250,17 @@ def test_beliefs_that_are_kept_take_no_more_room_than_there_is(monkeypatch: pyte
     _, again = narrow.belief_fact(seen)
     assert len(narrow._folds) == 1  # pyright: ignore[reportPrivateUsage]
     assert np.array_equal(again.density, roomy.density)
+
+
+def test_a_file_of_thousands_of_bearings_is_no_deeper_than_the_stack(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, folded = task(0.1), list[int]()
+
+    def counted(_: Localization, before: GridBelief, bearings: tuple[Bearing, ...]) -> GridBelief:
+        folded.append(len(bearings))
+        return before
+
+    monkeypatch.setattr(Localization, "_with", counted)
+    bearings = made.planner_bearings([towards(40 * n, -40, (150, 60)) for n in range(4)]) * 500
+    made.belief(bearings)
+    made.belief((*bearings, bearings[0]))
+    assert folded == list(range(1, 2002))

@@ -126,6 +126,18 @@ def test_the_standoff_shrinks_until_two_places_are_left():
     assert len(places) == 2
 
 
+def test_the_standoff_shrinks_before_a_refused_place_or_known_echoes_are_all_that_is_left():
+    """In a small area r_min leaves two places: after a turn in vain at both of them the search was over."""
+    tight = replace(FIELD, flight_area=(rectangle(120, 40, 200, 100),), standoff=500.0)
+    belief = fold(tight, TWO)
+    refused = [(float(x), float(y)) for x, y in constrained_actions(tight, belief)]
+    left = constrained_actions(tight, belief, lambda places: without_refused(places, refused, tight, belief))
+    assert len(without_refused(left, refused, tight, belief)) == 2
+    turned = replace(tight, turned_at=tuple(refused))
+    left = constrained_actions(turned, belief, lambda places: with_own_echoes(places, turned))
+    assert np.min([np.hypot(*(left - place).T) for place in refused]) >= OTHER_ECHOES_M
+
+
 def test_when_everything_is_forbidden_that_is_said():
     forbidden = replace(FIELD, no_fly=(rectangle(-100, -100, 400, 200),))
     with refusing(NoPlaceToFly()):

@@ -15,7 +15,7 @@ from planner.policy.simulation import simulate
 from planner.reasons import BudgetTooSmall, EveryPlaceRefused, FixedSamplePaths, UnusableNumber
 from planner.selection.sequential_halving import sequential_halving
 from planner.selection.uniform import uniform
-from planner.types import GaussianPrior, LinearMotion, Problem
+from planner.types import GaussianPrior, Legs, LinearMotion, Problem
 
 
 def rectangle(x0, y0, x1, y1):
@@ -168,6 +168,30 @@ def test_places_without_a_way_are_no_candidates():
     )
     decision = rollout(problem=wall)
     assert max(c.y for c in decision.candidates) < 100
+
+
+def test_a_place_that_shares_echoes_is_better_than_none():
+    """A no-fly area cuts the flight area in two: all that can be reached lies close to where a turn was made."""
+    strip, wall = rectangle(0, 0, 300, 40), rectangle(60, -10, 100, 50)
+    cut = replace(
+        PROBLEM, flight_area=(strip,), no_fly=(wall,), action_spacing=10.0, turned_at=((20.0, 20.0), (40.0, 20.0))
+    )
+    decision = Rollout(sequential_halving, "crn", "ellipse", 200)(
+        cut, prior_belief(cut), (40.0, 20.0), np.random.default_rng(1)
+    )
+    assert (decision.x, decision.y) in {(5.0, 5.0), (5.0, 35.0), (55.0, 5.0), (55.0, 35.0)}, "the farthest of these"
+
+
+def test_a_craft_that_does_not_stop_has_a_leg_to_fly_where_all_places_share_echoes():
+    legs = Legs(least=20.0, sigma=np.deg2rad(6.0), pause=2.0)
+    small = replace(
+        PROBLEM, flight_area=(rectangle(0, 0, 30, 30),), action_spacing=10.0, legs=legs, turned_at=((6.0, 6.0),)
+    )
+    here = (25.0, 25.0)  # the farthest from the turn, and where the last leg led to
+    decision = Rollout(sequential_halving, "crn", "ellipse", 200)(
+        small, prior_belief(small), here, np.random.default_rng(1)
+    )
+    assert np.hypot(decision.x - here[0], decision.y - here[1]) >= legs.least
 
 
 def test_what_cannot_be_planned_is_said():

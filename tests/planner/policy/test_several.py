@@ -12,7 +12,7 @@ from planner.belief.joint import joint_prior, update_joint
 from planner.kernels.model import Tasks
 from planner.options import CROSSFIX, FIELD
 from planner.plan import plan
-from planner.policy.actions import action_space
+from planner.policy.actions import OTHER_ECHOES_M, action_space
 from planner.policy.several import FORECAST_PATHS, Wanted, plan_several, standoff_among, telling_beside_bias
 from planner.policy.simulation import simulate
 from planner.policy.value_table import program_for
@@ -148,3 +148,20 @@ def joint(one):
     for x, y in (HOME, (20.0, 10.0)):
         belief = update_joint(belief, Bearing(x, y, float(np.arctan2(target.y - y, target.x - x)), PROBLEM.sigma))
     return belief
+
+
+def test_each_emitter_has_its_own_echoes_whichever_is_named_first():
+    """One turn heard both, another only the second: there the first has nothing to hear again."""
+    both, second = HOME, (250.0, 60.0)
+    (one,) = wanted((60.0, 100.0), problem=replace(PROBLEM, turned_at=(both,)), places=(both,))
+    (other,) = wanted((200.0, 100.0), problem=replace(PROBLEM, turned_at=(both, second)), places=(both, second))
+    places = action_space(PROBLEM, one.belief)
+    of_one, of_other = (telling_beside_bias(w.problem, w.belief, places) for w in (one, other))
+    near_both, near_second = (np.hypot(*(places - at).T) < OTHER_ECHOES_M for at in (both, second))
+    assert not (of_one & near_both).any()
+    assert (of_one & near_second).any()
+    assert not (of_other & (near_both | near_second)).any()
+    for some in ((one, other), (other, one)):
+        compared = plan_several(some, HOME, OPTIONS).candidates
+        assert min(np.hypot(c.x - both[0], c.y - both[1]) for c in compared) >= OTHER_ECHOES_M
+        assert any(np.hypot(c.x - second[0], c.y - second[1]) < OTHER_ECHOES_M for c in compared)
