@@ -65,7 +65,7 @@ class ReceiverError(HardwareError):
 
 
 LOST_PERCENT = 1.0
-"""Of a receiver's samples: who loses more is told of."""
+"""Share of its samples; a receiver that loses more is reported."""
 
 
 class Clock(Protocol):

@@ -231,7 +231,7 @@ def _whole(mission_id: str) -> Generator[None]:
 
 
 def damaged(mission_id: str, error: ValueError) -> JournalDamaged:
-    """What its readers are told; the log says it, too."""
+    """The error for those who read the mission. It is logged, too."""
     log.error("mission %s: what is stored of it cannot be read: %s", mission_id, error)
     return JournalDamaged(MissionDamaged(mission_id, why(error)))
 
