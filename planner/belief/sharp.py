@@ -12,16 +12,17 @@ from typing import NamedTuple
 import numpy as np
 
 from planner.belief.evidence import SMALLEST_SIGMA
+from planner.belief.same_place import by_place
 from planner.types import Bearing, BoolArray, FloatArray
 
-MOST_BEARINGS = 12
-"""The last ones, of which every two are crossed."""
+MOST_PLACES = 12
+"""The last ones, of which every two are crossed, each by its narrowest bearing."""
 TURNS = np.deg2rad(np.arange(-20.0, 20.5, 1.0))
 """rad, what the compass of all may be off by: two standard deviations of the worst."""
 CELLS_A_WIDTH = 0.4
 """A crossing of bearings is resolved where their standard deviation is at least so many cells wide."""
 APART_M = 1.0
-"""Two bearings from nearer to each other are taken from one place."""
+"""Two sources nearer to each other look from one place."""
 
 
 class Crossings(NamedTuple):
@@ -43,8 +44,8 @@ class Crossings(NamedTuple):
 
 
 def crossings(bearings: Sequence[Bearing]) -> Crossings:
-    """Ahead of both, of every two bearings, turned together by each of TURNS."""
-    taken = bearings[-MOST_BEARINGS:]
+    """Ahead of both, of bearings from every two places, turned together by each of TURNS."""
+    taken = [min(there, key=lambda one: one.sigma) for there in by_place(bearings)[-MOST_PLACES:]]
     place = np.array([(b.x, b.y) for b in taken]).reshape(-1, 2)
     sigma = np.array([max(b.sigma, SMALLEST_SIGMA) for b in taken])
     first, second = np.triu_indices(len(taken), 1)

@@ -60,6 +60,14 @@ def test_every_two_bearings_cross_at_the_emitter_and_elsewhere_where_the_compass
     assert len(found.within(-1.0, -1.0, 1.0, 1.0).x) < len(found.x)
 
 
+def test_a_station_that_is_heard_often_hides_no_other() -> None:
+    two = [Bearing(-60.0, 0.0, 0.0, SIGMA), Bearing(0.0, -60.0, math.pi / 2.0, SIGMA)]
+    station = Bearing(60.0, 0.0, 3.0, SIGMA)
+    found = crossings([*two, *[station] * 30])
+    assert np.hypot(found.x, found.y).min() < 1e-9
+    assert len(found.x) == len(crossings([*two, station]).x)
+
+
 def test_bearings_that_do_not_cross_ask_for_nothing() -> None:
     north = Bearing(0.0, 0.0, math.pi / 2.0, SIGMA)
     for bearings in ([], [north], [north, north], [north, Bearing(0.0, 0.0, 1.0, SIGMA)]):

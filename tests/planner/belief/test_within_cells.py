@@ -26,6 +26,7 @@ def log_of(bearings: list[Bearing], x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def around(target: tuple[float, float], away: float, sigma: float, count: int = 5) -> list[Bearing]:
+    """Each of a source of its own: those of one from places so near count as one."""
     rng = np.random.default_rng(count)
     turns = [1.3 * k + 0.2 for k in range(count)]
     return [
@@ -34,8 +35,9 @@ def around(target: tuple[float, float], away: float, sigma: float, count: int = 
             target[1] + away * math.sin(turn),
             turn + math.pi + rng.normal(0.0, sigma),
             sigma,
+            source=f"source {k}",
         )
-        for turn in turns
+        for k, turn in enumerate(turns)
     ]
 
 
