@@ -24,7 +24,7 @@ from hardware.readings import Place
 from hardware.reasons.table import FileUnreadable
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
-from planner.belief.joint import JointBelief, corrected, joint_prior, update_joint
+from planner.belief.joint import JointBelief, corrected, fold_joint, joint_prior
 from planner.belief.source_errors import ErrorPrior, SourceErrors
 from planner.belief.verdict import points_at, stated, verdict
 from planner.geometry import convex_hull
@@ -269,7 +269,7 @@ def _own_sigma_deg(bearing: RecordedBearing) -> float:
 def _fold(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
     """With outliers as a joint belief that knows everything else, whose cells are as fine as the bearings cross."""
     if outliers > 0.0:
-        known = _with_all(joint_prior(problem, otherwise=_known(outliers)), bearings)
+        known = fold_joint(joint_prior(problem, otherwise=_known(outliers)), bearings)
         return GridBelief(**{one.name: getattr(known, one.name) for one in fields(GridBelief)})
     try:
         return fold(problem, bearings)
@@ -283,15 +283,9 @@ def _known(outliers: float) -> ErrorPrior:
     return ErrorPrior(RIGHT_RAD * one, one, one, one, outliers * one, one)
 
 
-def _with_all(belief: JointBelief, bearings: list[Bearing]) -> JointBelief:
-    for bearing in bearings:
-        belief = update_joint(belief, bearing)
-    return belief
-
-
 def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
     """None when hardly two of several bearings agree on a place: then all of them may be outliers."""
-    belief = _with_all(joint_prior(problem, otherwise=unknown_errors(outliers)), bearings)
+    belief = fold_joint(joint_prior(problem, otherwise=unknown_errors(outliers)), bearings)
     found = estimate(belief, problem.estimator)
     agreeing = sum(points_at(bearing, found.x, found.y) for bearing in corrected(belief, bearings))
     return None if agreeing < min(2, len(bearings)) else belief

@@ -30,7 +30,7 @@ from hardware.direction_finding.heading_offset import HeadingOffset, heading_off
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from planner.belief.grid import GridBelief, digest, update
-from planner.belief.joint import JointBelief, heard_on_the_way, update_joint
+from planner.belief.joint import JointBelief, fold_joint, heard_on_the_way, update_joint
 from planner.belief.joint import unheard as silent_prior
 from planner.belief.moving import MovingBelief, predicted, update_moving
 from planner.belief.verdict import verdict
@@ -41,6 +41,8 @@ from planner.types import Bearing, InconsistentBearings, LocalizationRule, Plann
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
 
+AT_ONCE = 24
+"""So many bearings of a joint belief, and every multiple, are folded together: a recording has hundreds."""
 FOLDS_KEPT, CELLS_KEPT = 64, 4_000_000
 """Beliefs that the next bearing, and each question about a place, goes on from, and cells of all of them, of 16 bytes
 each: most have some ten thousand, those of sharp bearings in a large area a quarter of a million."""
@@ -157,12 +159,13 @@ class Localization:
         return found
 
     def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
-        """Bearing by bearing, in order: what was folded for fewer bearings is gone on from. One thread at a time:
-        beliefs of emitters that share a source's errors ask for each other."""
+        """Bearing by bearing, in order, from the first or those folded at once: what was folded for fewer bearings is
+        gone on from. One thread at a time: beliefs of emitters that share a source's errors ask for each other."""
         with self._folding:
-            known = next((k for k in range(len(bearings), 0, -1) if bearings[:k] in self._folds), 0)
+            first = max(len(bearings) // AT_ONCE * AT_ONCE, 1) if isinstance(self.prior, JointBelief) else 1
+            known = next((k for k in range(len(bearings), first - 1, -1) if bearings[:k] in self._folds), 0)
             found = self._folds[bearings[:known]] if known else self.prior
-            for count in range(known + 1, len(bearings) + 1):
+            for count in range(max(known + 1, first), len(bearings) + 1):
                 found = self._with(found, bearings[:count])
                 _make_room(self._folds)
                 self._folds[bearings[:count]] = found
@@ -171,6 +174,8 @@ class Localization:
     def _with(self, before: GridBelief, bearings: tuple[Bearing, ...]) -> GridBelief:
         """The last of the bearings taken in. A moving emitter's belief is about the end of the newest turn."""
         match before:
+            case JointBelief() if len(bearings) % AT_ONCE == 0:
+                return fold_joint(before, bearings)
             case MovingBelief():
                 now = max(b.taken_at for b in bearings) + 0.5 * self.problem.measurement_time
                 return update_moving(before, bearings[-1], now)

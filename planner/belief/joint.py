@@ -152,8 +152,16 @@ Weighing = type[Weigher]
 
 def update_joint(belief: JointBelief, bearing: Bearing, weighing: Weighing = compiled_evidence.Weigher) -> JointBelief:
     """Bayes' rule for one bearing more (3.26-3.28), then crop to what holds mass and refine where that is coarse."""
-    validate_bearing(bearing)
-    folded = (*belief.folded, bearing)
+    return fold_joint(belief, (bearing,), weighing)
+
+
+def fold_joint(
+    belief: JointBelief, bearings: Sequence[Bearing], weighing: Weighing = compiled_evidence.Weigher
+) -> JointBelief:
+    """`update_joint` for these bearings together: as many weighings as for one."""
+    for bearing in bearings:
+        validate_bearing(bearing)
+    folded = (*belief.folded, *bearings)
     return settled(replace(belief, folded=folded, bearings=len(folded), copies=1), weighing)
 
 

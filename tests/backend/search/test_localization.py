@@ -264,3 +264,25 @@ def test_a_file_of_thousands_of_bearings_is_no_deeper_than_the_stack(monkeypatch
     made.belief(bearings)
     made.belief((*bearings, bearings[0]))
     assert folded == list(range(1, 2002))
+
+
+def joint_task() -> Localization:
+    return localization(MissionSpec(name="m", area=AREA, sensor=SensorSpec(bearing_errors="joint")), HOME)
+
+
+def test_many_bearings_are_folded_at_once_and_grow_as_they_begin(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after a restart: a belief does not depend on when its bearings became known."""
+    monkeypatch.setattr(module, "AT_ONCE", 4)
+    grown, measured = joint_task(), [towards(37 * n - 90, -40 - 9 * n, (150, 60), sigma=6.0) for n in range(10)]
+    for count in range(len(measured)):
+        grown.belief_fact(measured[:count])
+    assert grown.belief_fact(measured)[0] == joint_task().belief_fact(measured)[0]
+    folded, one_more = list[int](), Localization._with  # pyright: ignore[reportPrivateUsage]
+
+    def counted(self: Localization, before: GridBelief, bearings: tuple[Bearing, ...]) -> GridBelief:
+        folded.append(len(bearings))
+        return one_more(self, before, bearings)
+
+    monkeypatch.setattr(Localization, "_with", counted)
+    joint_task().belief_fact(measured)
+    assert folded == [8, 9, 10]

@@ -10,9 +10,9 @@ from planner.belief.compiled_tables import RESCALED_EVERY
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.evidence import sightings
 from planner.belief.grid import prior_belief
-from planner.belief.joint import JointBelief, corrected, joint_prior, update_joint
+from planner.belief.joint import JointBelief, corrected, fold_joint, joint_prior, update_joint
 from planner.belief.source_errors import ErrorPrior, nodes
-from planner.belief.verdict import verdict
+from planner.belief.verdict import stated, verdict
 from planner.geometry import distance_to_convex
 from planner.observation import mixture_likelihood, wrap
 from planner.types import Bearing, LinearMotion, LocalizationRule, Peak, PlannerError, Problem
@@ -299,3 +299,23 @@ def test_the_grid_becomes_fine_where_the_emitter_is_and_stays_a_grid_belief():
 def test_a_bearing_without_numbers_is_refused():
     with pytest.raises(PlannerError):
         update_joint(joint_prior(PROBLEM), Bearing(0.0, 0.0, float("nan"), SIGMA))
+
+
+@pytest.mark.parametrize("size", [1.0, 10.0])
+def test_bearings_folded_at_once_say_what_they_say_one_by_one(size):
+    """On cells that may be cropped and cut otherwise."""
+    wide = replace(PROBLEM, area=(size * SQUARE,))
+    rng = np.random.default_rng(3)
+    bearings = [toward(place, 2.0 + rng.normal(0.0, 3.0)) for place in (*AROUND, *(1.7 * np.array(AROUND)))]
+    one_by_one = joint(bearings, problem=wide)
+    at_once = fold_joint(joint_prior(wide), bearings)
+    assert (at_once.folded, at_once.bearings) == (tuple(bearings), len(bearings))
+    said = [stated(one, estimate(one, wide.estimator), 10.0) for one in (one_by_one, at_once)]
+    assert said[1].expected_rmse == pytest.approx(said[0].expected_rmse, rel=0.02)
+    assert np.hypot(said[1].x - said[0].x, said[1].y - said[0].y) < 0.1 * said[0].expected_rmse
+    assert at_once.errors[0].bias == pytest.approx(one_by_one.errors[0].bias, abs=0.1 * one_by_one.errors[0].bias_sd)
+
+
+def test_a_bearing_without_numbers_among_others_is_refused():
+    with pytest.raises(PlannerError):
+        fold_joint(joint_prior(PROBLEM), [toward(AROUND[0]), Bearing(0.0, 0.0, float("nan"), SIGMA)])
