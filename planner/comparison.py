@@ -13,11 +13,18 @@ from planner.belief.joint import JointBelief
 from planner.geometry import distance_to_convex
 from planner.options import PlannerOptions
 from planner.plan import expected_time_from
-from planner.policy.actions import action_space, standoff_from
+from planner.policy.actions import action_space, apart_from_turns, from_nearest, standoff_from
 from planner.policy.fisher import gain_beside_bias
 from planner.policy.rollout import TELLING_SHARE
 from planner.policy.several import Wanted, times_together
-from planner.reasons import BetweenPlaces, CrossesTooLittle, NearerThanStandoff, RuleReason, TellsLittleOfBias
+from planner.reasons import (
+    BetweenPlaces,
+    CrossesTooLittle,
+    EchoesHeardBefore,
+    NearerThanStandoff,
+    RuleReason,
+    TellsLittleOfBias,
+)
 from planner.types import Bearing, FloatArray, PlannerError, Problem
 
 COMPARED_PATHS = 400
@@ -82,7 +89,8 @@ def rules_against(
 
     by_claim: it looks one bearing ahead for a claim, and leaves out no place for telling little of the bias.
 
-    The standoff counts as far as it was kept: it shrinks where it would leave fewer than two places (6.1).
+    The standoff counts as far as it was kept: it shrinks where it would leave fewer than two places (6.1). So does the
+    distance to earlier turns where no place is as far.
     """
     found: list[RuleReason] = []
     xy = np.array([place])
@@ -90,6 +98,11 @@ def rules_against(
         places = action_space(problem, belief)
     except PlannerError:
         return ()
+    away, *others = from_nearest(np.vstack([xy, places]), problem.turned_at).tolist()
+    apart = apart_from_turns(np.array(others))
+    if away < apart:
+        found.append(EchoesHeardBefore(away, apart))
+    places = places[np.array(others) >= apart]
     if problem.crossing is not None:
         kept_places = problem.crossing.crossed_from(np.vstack([xy, places]))
         if not kept_places[0]:

@@ -73,7 +73,7 @@ def without_refused(
     where any place is so far.
     """
     near = max(0.5 * (problem.action_spacing or belief.h), SAME_PLACE_M)
-    away = _from_nearest(places, refused)
+    away = from_nearest(places, refused)
     if standoff_from(belief, problem) < problem.standoff and (away >= max(problem.standoff, near)).any():
         near = max(problem.standoff, near)
     return places[away >= near]
@@ -86,11 +86,16 @@ def with_own_echoes(places: FloatArray, problem: Problem) -> FloatArray:
 
 def own_echoes(places: FloatArray, problem: Problem) -> BoolArray:
     """(n,) which of the places (n, 2), m, `with_own_echoes` keeps; at least one."""
-    away = _from_nearest(places, problem.turned_at)
-    return np.asarray(away >= min(OTHER_ECHOES_M, away.max(initial=0.0)))
+    away = from_nearest(places, problem.turned_at)
+    return np.asarray(away >= apart_from_turns(away))
 
 
-def _from_nearest(places: FloatArray, others: Sequence[tuple[float, float]]) -> FloatArray:
+def apart_from_turns(away: FloatArray) -> float:
+    """m to keep from where turns were made, of places (n,) m away from them."""
+    return float(min(OTHER_ECHOES_M, away.max(initial=0.0)))
+
+
+def from_nearest(places: FloatArray, others: Sequence[tuple[float, float]]) -> FloatArray:
     """(n,) m from each place (n, 2) to the nearest of the others, m; infinite where there are none."""
     away = np.full(len(places), np.inf)
     for other in others:

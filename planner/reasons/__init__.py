@@ -53,7 +53,14 @@ from planner.reasons.refusal import (
     UnusableNumber,
     UnusableRing,
 )
-from planner.reasons.rule import BetweenPlaces, CrossesTooLittle, NearerThanStandoff, RuleReason, TellsLittleOfBias
+from planner.reasons.rule import (
+    BetweenPlaces,
+    CrossesTooLittle,
+    EchoesHeardBefore,
+    NearerThanStandoff,
+    RuleReason,
+    TellsLittleOfBias,
+)
 
 PlannerReason = ChoiceReason | NotYetReason | RefusalReason | RuleReason
 
@@ -69,6 +76,7 @@ __all__ = [
     "ChoiceReason",
     "CrossesTooLittle",
     "CrossingAngleTooSmall",
+    "EchoesHeardBefore",
     "ErrorMayBeFarLarger",
     "EstimateContradicted",
     "EveryPlaceRefused",

@@ -51,6 +51,20 @@ class CrossesTooLittle:
 
 
 @dataclass(frozen=True, slots=True)
+class EchoesHeardBefore:
+    """away_m: from the place to the nearest turn that was made. apart_m: what the planner keeps."""
+
+    away_m: float
+    apart_m: float
+    code: Literal["echoes_heard_before"] = "echoes_heard_before"
+    english: ClassVar[Words] = Words(
+        "The planner keeps {apart_m} from places where a turn was made; from here it is {away_m}. A bearing so near "
+        "hears the same echoes again and tells hardly anything new; the forecast does not know that.",
+        "Farther from all earlier turns the bearing is a witness of its own.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class BetweenPlaces:
     """spacing_m: of the lattice of places that are compared."""
 
@@ -62,4 +76,4 @@ class BetweenPlaces:
     )
 
 
-RuleReason = NearerThanStandoff | TellsLittleOfBias | CrossesTooLittle | BetweenPlaces
+RuleReason = NearerThanStandoff | TellsLittleOfBias | CrossesTooLittle | EchoesHeardBefore | BetweenPlaces

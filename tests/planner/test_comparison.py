@@ -13,7 +13,7 @@ from planner.comparison import between_places, difference_between, difference_to
 from planner.options import FIELD
 from planner.plan import plan
 from planner.policy.several import Wanted, times_together
-from planner.reasons import BetweenPlaces, NearerThanStandoff, TellsLittleOfBias
+from planner.reasons import BetweenPlaces, EchoesHeardBefore, NearerThanStandoff, TellsLittleOfBias
 from planner.types import Bearing, LinearConstantMotion, Problem
 
 AREA = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 120.0], [0.0, 120.0]])
@@ -66,6 +66,22 @@ def test_a_standoff_that_cannot_be_kept_forbids_no_more_than_it_does_the_planner
     vast = replace(PROBLEM, standoff=5000.0)
     chosen = plan(vast, BELIEF, [SEEN], HERE, FIELD, threads=1)
     assert rules_against(vast, BELIEF, (chosen.x, chosen.y)) == (BetweenPlaces(15.0),)
+
+
+def test_a_place_beside_an_earlier_turn_is_named() -> None:
+    turned = replace(PROBLEM, turned_at=((350.0, -45.0),))
+    assert rules_against(turned, BELIEF, (350.0, -55.0)) == (EchoesHeardBefore(10.0, 25.0),)
+    assert rules_against(turned, BELIEF, (350.0, -20.0)) == (BetweenPlaces(15.0),)
+
+
+def test_where_all_places_are_near_turns_the_farthest_breaks_no_rule() -> None:
+    beside = tuple((x, y) for x in range(-60, 361, 30) for y in range(-60, 181, 30))
+    turned = replace(PROBLEM, standoff=0.0, turned_at=beside)
+    chosen = plan(turned, BELIEF, [SEEN], HERE, FIELD, threads=1)
+    assert rules_against(turned, BELIEF, (chosen.x, chosen.y)) == (BetweenPlaces(15.0),)
+    (rule,) = rules_against(turned, BELIEF, (chosen.x + 12.0, chosen.y))
+    assert isinstance(rule, EchoesHeardBefore)
+    assert rule.away_m < rule.apart_m < 25.0
 
 
 def test_with_an_open_compass_a_place_that_says_little_of_it_is_named() -> None:

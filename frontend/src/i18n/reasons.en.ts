@@ -170,6 +170,10 @@ export const reasonsEn: ReasonTable = {
     text: "All that a claim waits for is a bearing from another side: lines must cross at {needed_deg}, and from here they cross at {crossing_deg}. The forecast does not know that.",
     remedy: "The angle is a setting of the mission.",
   },
+  echoes_heard_before: {
+    text: "The planner keeps {apart_m} from places where a turn was made; from here it is {away_m}. A bearing so near hears the same echoes again and tells hardly anything new; the forecast does not know that.",
+    remedy: "Farther from all earlier turns the bearing is a witness of its own.",
+  },
   between_places: {
     text: "No rule forbids it: the planner compares places {spacing_m} apart with a limited number of simulated flights, and yours is better than what it found.",
     remedy: "",

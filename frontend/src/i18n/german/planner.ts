@@ -164,6 +164,10 @@ export const planner = {
     text: "Es fehlt nur noch eine Peilung von einer anderen Seite: Die Linien müssen sich mit {needed_deg} kreuzen, und von hier kreuzen sie sich mit {crossing_deg}. Die Vorhersage weiß das nicht.",
     remedy: "Den Winkel legt der Einsatz fest.",
   },
+  echoes_heard_before: {
+    text: "Der Planer hält {apart_m} Abstand von Orten, an denen schon gedreht wurde; von hier sind es {away_m}. So nah hört eine Peilung dieselben Echos noch einmal und sagt kaum Neues; die Vorhersage weiß das nicht.",
+    remedy: "Weiter weg von allen früheren Drehungen ist die Peilung ein Zeuge für sich.",
+  },
   between_places: {
     text: "Keine Regel spricht dagegen: Der Planer vergleicht Orte im Abstand von {spacing_m} mit begrenzt vielen simulierten Flügen, und Ihrer ist besser als das, was er fand.",
     remedy: "",
