@@ -104,11 +104,10 @@ def rules_against(
         found.append(EchoesHeardBefore(away, apart))
     places = places[np.array(others) >= apart]
     if problem.crossing is not None:
-        kept_places = problem.crossing.crossed_from(np.vstack([xy, places]))
-        if not kept_places[0]:
+        if not problem.crossing.crossed_from(np.vstack([xy, places]))[0]:
             crossing, needed = np.rad2deg([problem.crossing.angles(xy)[0], problem.crossing.least])
             found.append(CrossesTooLittle(float(crossing), float(needed)))
-        places = places[kept_places[1:]]
+        places = places[problem.crossing.crossed_from(places)]
     standoff = standoff_from(belief, problem)
     if standoff > 0:
         region = confidence_region(belief)

@@ -82,6 +82,17 @@ def test_a_place_that_crosses_too_little_is_named() -> None:
     assert found[0].crossing_deg < 20.0
 
 
+@pytest.mark.parametrize("standoff", [0.0, 50.0])
+def test_a_place_that_crosses_more_widely_than_any_on_the_lattice_breaks_no_rule_about_it(standoff: float) -> None:
+    problem, belief, found = waiting()
+    crossing = replace(found, least=np.pi / 2)
+    asking = replace(problem, crossing=crossing, standoff=standoff, action_spacing=150.0)
+    beyond = (crossing.x, crossing.y + 120.0)
+    here, *others = crossing.angles(np.vstack([beyond, action_space(asking, belief)]))
+    assert here > max(others), "the case would show nothing"
+    assert not any(isinstance(rule, CrossesTooLittle) for rule in rules_against(asking, belief, beyond))
+
+
 def test_a_large_error_asks_for_no_angle() -> None:
     assert missing_crossing(PROBLEM, replace(RULE, threshold=5.0), BEARINGS, believed()) is None
 
