@@ -16,7 +16,7 @@ from planner.belief.same_place import by_place
 from planner.types import Bearing, BoolArray, FloatArray
 
 MOST_PLACES = 12
-"""The last ones, of which every two are crossed, each by its narrowest bearing."""
+"""Those with the narrowest bearings, of which every two are crossed, each by its narrowest."""
 TURNS = np.deg2rad(np.arange(-20.0, 20.5, 1.0))
 """rad, what the compass of all may be off by: two standard deviations of the worst."""
 CELLS_A_WIDTH = 0.4
@@ -45,7 +45,8 @@ class Crossings(NamedTuple):
 
 def crossings(bearings: Sequence[Bearing]) -> Crossings:
     """Ahead of both, of bearings from every two places, turned together by each of TURNS."""
-    taken = [min(there, key=lambda one: one.sigma) for there in by_place(bearings)[-MOST_PLACES:]]
+    narrowest = [min(there, key=lambda one: one.sigma) for there in by_place(bearings)]
+    taken = sorted(narrowest, key=lambda one: one.sigma)[:MOST_PLACES]
     place = np.array([(b.x, b.y) for b in taken]).reshape(-1, 2)
     sigma = np.array([max(b.sigma, SMALLEST_SIGMA) for b in taken])
     first, second = np.triu_indices(len(taken), 1)

@@ -68,6 +68,13 @@ def test_a_station_that_is_heard_often_hides_no_other() -> None:
     assert len(found.x) == len(crossings([*two, station]).x)
 
 
+def test_sharp_bearings_are_crossed_however_many_others_come_after() -> None:
+    two = [Bearing(-60.0, 0.0, 0.0, SIGMA), Bearing(0.0, -60.0, math.pi / 2.0, SIGMA)]
+    others = [Bearing(300.0 + 20.0 * k, 300.0, 4.0, 3.0 * SIGMA) for k in range(20)]
+    found = crossings([*two, *others])
+    assert np.hypot(found.x, found.y).min() < 1e-9
+
+
 def test_bearings_that_do_not_cross_ask_for_nothing() -> None:
     north = Bearing(0.0, 0.0, math.pi / 2.0, SIGMA)
     for bearings in ([], [north], [north, north], [north, Bearing(0.0, 0.0, 1.0, SIGMA)]):
