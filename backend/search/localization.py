@@ -42,7 +42,7 @@ DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
 
 AT_ONCE = 24
-"""So many bearings of a joint belief, and every multiple, are folded together: a recording has hundreds."""
+"""A joint belief folds this many bearings, and every multiple of it, in one go: a recording has hundreds."""
 FOLDS_KEPT, CELLS_KEPT = 64, 4_000_000
 """Beliefs that the next bearing, and each question about a place, goes on from, and cells of all of them, of 16 bytes
 each: most have some ten thousand, those of sharp bearings in a large area a quarter of a million."""

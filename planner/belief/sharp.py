@@ -16,11 +16,11 @@ from planner.belief.same_place import by_place
 from planner.types import Bearing, BoolArray, FloatArray
 
 MOST_PLACES = 12
-"""Those with the narrowest bearings, of which every two are crossed, each by its narrowest."""
+"""Every two of the places with the narrowest bearings are crossed, each by its narrowest one."""
 TURNS = np.deg2rad(np.arange(-20.0, 20.5, 1.0))
 """rad, what the compass of all may be off by: two standard deviations of the worst."""
 CELLS_A_WIDTH = 0.4
-"""A crossing of bearings is resolved where their standard deviation is at least so many cells wide."""
+"""Cells resolve a crossing of bearings where its standard deviation is at least this many of them."""
 APART_M = 1.0
 """Two sources nearer to each other look from one place."""
 

@@ -1,4 +1,4 @@
-"""Samples that get lost are told once, and again after worse trouble."""
+"""Lost samples are reported once, and again when it gets worse."""
 
 from __future__ import annotations
 
