@@ -80,20 +80,37 @@ def _best_of_lattice(
         corners = confidence_hull(work, now, cells, heaviest, m0, x0, y0, h, ny)
         needed = affordable_standoff(rules, True, n, 0.0, 0.0, 0.0, 0.0, work.chain, corners)
     ways = lattice >= 0 and len(rules.travel) > 0
+    soonest = _least(after)
+    best, least = 0, np.inf
     for k in range(n):
         qx, qy = rules.places[k, 0], rules.places[k, 1]
         distance = rules.travel[lattice, k] if ways else np.sqrt((qx - px) ** 2 + (qy - py) ** 2)
+        flown = _time(rules, distance)
         costs[k] = np.inf
-        if corners == 0 or clear(work.chain, corners, qx, qy, needed, np.inf):
-            costs[k] = _time(rules, distance) + _after_at(after, rules.nodes, ex, ey, c, s, s1, qx, qy)
-    return _first_least(costs, n)
+        if flown + soonest > least * (1.0 + NEARLY):
+            continue
+        costs[k] = flown + _after_at(after, rules.nodes, ex, ey, c, s, s1, qx, qy)
+        if costs[k] < least and (corners == 0 or clear(work.chain, corners, qx, qy, needed, np.inf)):
+            best, least = k, costs[k]
+    for k in range(best):
+        if costs[k] <= least * (1.0 + NEARLY):
+            qx, qy = rules.places[k, 0], rules.places[k, 1]
+            if corners == 0 or clear(work.chain, corners, qx, qy, needed, np.inf):
+                return k
+    return best
+
+
+@jit
+def _least(costs):
+    least = np.inf
+    for k in range(len(costs)):
+        least = min(least, costs[k])
+    return least
 
 
 @jit
 def _first_least(costs, n):
-    least = np.inf
-    for k in range(n):
-        least = min(least, costs[k])
+    least = _least(costs[:n])
     for k in range(n):
         if costs[k] <= least * (1.0 + NEARLY):
             return k
@@ -142,7 +159,7 @@ def _after_at(after, nodes, ex, ey, c, s, s1, x, y):
 
 @jit
 def _between_nodes(u, nodes):
-    at = np.log1p(min(u, nodes[-1]) / NEAR) / NODE_STEP
+    at = np.log(1.0 + min(u, nodes[-1]) / NEAR) / NODE_STEP
     k = min(int(at), len(nodes) - 2)
     return k, at - k
 
