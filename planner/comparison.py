@@ -13,7 +13,7 @@ from planner.belief.joint import JointBelief
 from planner.geometry import distance_to_convex
 from planner.options import PlannerOptions
 from planner.plan import expected_time_from
-from planner.policy.actions import action_space, apart_from_turns, from_nearest, standoff_from
+from planner.policy.actions import action_space, apart_from_turns, from_nearest, standoff_from, without_refused
 from planner.policy.fisher import gain_beside_bias
 from planner.policy.rollout import TELLING_SHARE
 from planner.policy.several import Wanted, times_together
@@ -83,11 +83,17 @@ def _paired(differences: FloatArray) -> PairedDifference:
 
 
 def rules_against(
-    problem: Problem, belief: GridBelief, place: tuple[float, float], *, by_claim: bool = False
+    problem: Problem,
+    belief: GridBelief,
+    place: tuple[float, float],
+    *,
+    by_claim: bool = False,
+    without: Sequence[tuple[float, float]] = (),
 ) -> tuple[RuleReason, ...]:
     """Why the rollout policy would not compare this place (m ENU); `BetweenPlaces` when nothing but the lattice does.
 
-    by_claim: it looks one bearing ahead for a claim, and leaves out no place for telling little of the bias.
+    by_claim: it looks one bearing ahead for a claim, and leaves out no place for telling little of the bias. without:
+    places (m ENU) that the operator refused, with which the rest of a rule's measure shrinks.
 
     The standoff counts as far as it was kept: it shrinks where it would leave fewer than two places (6.1). So does the
     distance to earlier turns where no place is as far.
@@ -95,9 +101,11 @@ def rules_against(
     found: list[RuleReason] = []
     xy = np.array([place])
     try:
-        places = action_space(problem, belief)
+        places = without_refused(action_space(problem, belief), without, problem, belief)
     except PlannerError:
         return ()
+    if len(places) == 0:
+        return between_places(problem)
     away, *others = from_nearest(np.vstack([xy, places]), problem.turned_at).tolist()
     apart = apart_from_turns(np.array(others))
     if away < apart:

@@ -115,6 +115,11 @@ class CraftState:
         return any(bearing_id not in self.left_out for bearing_id, _ in self.taken)
 
     @property
+    def shunned(self) -> tuple[Place, ...]:
+        """Places that are not chosen next."""
+        return (*self.avoid, *self.refused)
+
+    @property
     def comes_down_as_ordered(self) -> bool:
         """Also when a server was away meanwhile, unless it has been ordered to hold since."""
         return self.phase in HOMEWARD or (self.phase == "hold" and self.phase_reason == ORDERED_BEFORE)

@@ -122,7 +122,7 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
         go_home(step, NotLocalized(PlacesUsedUp(search.place_number), search.not_yet))
     else:
         step.go("planning", reason)
-        step.do(PlanNext(search.place_number + 1, (*craft.avoid, *craft.refused)))
+        step.do(PlanNext(search.place_number + 1, craft.shunned))
 
 
 def arrived(step: CraftStep) -> None:
@@ -162,7 +162,7 @@ def take_off_again(step: CraftStep, reason: Reason) -> None:
     craft, altitude_m = step.craft, step.search.mission.flight.altitude_relative_m
     step.go("taking_off", reason)
     chosen = None if craft.chosen is None else craft.chosen.place
-    step.do(TakeOff(altitude_m, again=True, chosen=chosen, avoid=(*craft.avoid, *craft.refused)))
+    step.do(TakeOff(altitude_m, again=True, chosen=chosen, avoid=craft.shunned))
 
 
 def measure(step: CraftStep, reason: Reason) -> None:

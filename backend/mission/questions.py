@@ -73,7 +73,9 @@ class Questions:
             runner.told.keep(search, place, Foretold(found.mean_s, found.p90_s, found.rollouts))
         if instead_of is None:
             return found, None
-        return found, await asyncio.to_thread(compare, wanted, start, place, instead_of, ranks)
+        state = runner.state.crafts.get(craft.equipment.craft_id) if runner and craft else None
+        avoid = () if state is None else state.shunned
+        return found, await asyncio.to_thread(compare, wanted, start, place, instead_of, ranks, avoid)
 
     async def advise(
         self, mission_id: str, here: Place, going: Going, emitter_id: str | None

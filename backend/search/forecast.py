@@ -14,6 +14,7 @@ from backend.search.planning import candidate_facts, cost_of, decide, in_nine_of
 from backend.spec import Place
 from planner.comparison import between_places, difference_between, difference_together, rules_against
 from planner.policy.several import Wanted
+from planner.reasons import RuleReason
 from planner.types import PlannerError
 
 Vetoes = Callable[[Place, Sequence[tuple[float, float]]], tuple[Reason, ...]]
@@ -85,11 +86,12 @@ def compare(
     place: Place,
     other: Place,
     ranks: Sequence[int] = (),
+    avoid: Sequence[Place] = (),
 ) -> Comparison | None:
     """A place beside another by the measure of the mission's planner; None when one of them cannot be reached.
 
     wanted: the emitters that are looked for, each with its counted bearings. ranks: in their order of importance, none:
-    they are alike.
+    they are alike. avoid: places that the planner leaves out.
     """
     (task, measured), *more = wanted
     start, here, there = (task.frame.to_enu(p) for p in (platform, place, other))
@@ -113,7 +115,11 @@ def compare(
     if not compared.quicker:
         return compared
     (problem, belief), *_ = problems
-    rules = between_places(problem) if together else rules_against(problem, belief, here, by_claim=found.by_claim)
+    if together:
+        rules: Sequence[RuleReason] = between_places(problem)
+    else:
+        without = [task.frame.to_enu(p) for p in avoid]
+        rules = rules_against(problem, belief, here, by_claim=found.by_claim, without=without)
     return replace(compared, rules=tuple(carried(rule) for rule in rules))
 
 

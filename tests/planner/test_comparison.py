@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -82,6 +83,16 @@ def test_where_all_places_are_near_turns_the_farthest_breaks_no_rule() -> None:
     (rule,) = rules_against(turned, BELIEF, (chosen.x + 12.0, chosen.y))
     assert isinstance(rule, EchoesHeardBefore)
     assert rule.away_m < rule.apart_m < 25.0
+
+
+def test_where_the_other_places_are_refused_the_one_that_is_left_breaks_no_rule() -> None:
+    turned = replace(PROBLEM, turned_at=((150.0, -30.0), (250.0, 150.0)))
+    here, x, y = (150.0, -15.0), range(-52, 361, 15), range(-52, 181, 15)
+    refused = tuple(place for place in product(x, y) if np.hypot(place[0] - here[0], place[1] - here[1]) > 15.0)
+    chosen = plan(turned, BELIEF, [SEEN], HERE, FIELD, threads=1, without=refused)
+    asked = (chosen.x, chosen.y)
+    assert EchoesHeardBefore in [type(rule) for rule in rules_against(turned, BELIEF, asked)]
+    assert rules_against(turned, BELIEF, asked, without=refused) == (BetweenPlaces(15.0),)
 
 
 def test_with_an_open_compass_a_place_that_says_little_of_it_is_named() -> None:
