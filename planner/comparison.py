@@ -93,7 +93,7 @@ def rules_against(
     """Why the rollout policy would not compare this place (m ENU); `BetweenPlaces` when nothing but the lattice does.
 
     by_claim: it looks one bearing ahead for a claim, and leaves out no place for telling little of the bias. without:
-    places (m ENU) that the operator refused, with which the rest of a rule's measure shrinks.
+    places (m ENU) that the planner leaves out, since they were refused or told nothing.
 
     The standoff counts as far as it was kept: it shrinks where it would leave fewer than two places (6.1). So does the
     distance to earlier turns where no place is as far.
