@@ -3,7 +3,7 @@
 V(b, p) = min_a t(p, a) + G(b, a),   G(b, a) = t_m + E_z V(b', a) where b' is not yet localized (Bellman's equation of
 4.5 and 4.11 for a belief that is a Gaussian after every bearing). Lengths are in units of the threshold inside.
 
-A table takes a minute or more of one processor (planner.study.value_cache keeps it on disk); those of the suggested
+A table takes ten seconds or more of one processor (planner.study.value_cache keeps it on disk); those of the suggested
 mission come with the package (SHIPPED). Plans use it and those that are kept in memory (`keep`); while none fits,
 `program_for` answers None and another base policy stands in.
 """
@@ -168,8 +168,13 @@ def compute(key: ProgramKey, transitions_of: Callable[[float], Transitions] | No
     return ProgramTable(key, np.ascontiguousarray(by_scale.astype(np.float32).astype(np.float64)))
 
 
+@lru_cache(1)
 def compute_transitions(sigma: float) -> Transitions:
-    """What a bearing of noise sigma (rad) does to a Gaussian belief, from every node."""
+    """What a bearing of noise sigma (rad) does to a Gaussian belief, from every node; not to be written to.
+
+    Two thirds of a table's cost, and the same for a draft whose goal, standoff, speed or turn is changed: the last are
+    kept (12 MB).
+    """
     shape = (RATIOS, NODES, NODES, DRAWS)
     out = Transitions(*(np.empty(shape) for _ in Transitions._fields))
     transitions(ratios(), nodes(), float(sigma), normal_draws(DRAWS), out)
