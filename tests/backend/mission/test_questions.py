@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
 from equipment import FRAME, spec
-from flights import order, stuck
+from flights import flying, order, stuck
 from stage import Stage
 
 from backend.commands import Override
 from backend.events import PlanChosen
+from backend.mission import questions
 from backend.reasons.safety import OutsideFence, PilotControls
 
 
@@ -48,3 +52,18 @@ async def test_in_flight_a_forecast_says_what_forbids_the_place_now(stage: Stage
     stage.vehicle.pilot_takes_over()
     await stage.until_phase(mission_id, "manual")
     assert (await stage.room.questions.expected_time(mission_id, FRAME.to_geo(0, -20)))[0].reason == PilotControls()
+
+
+async def test_a_place_left_for_its_sweeps_is_no_argument_against_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = Stage(rejected=20)
+    compared: list[Any] = []
+    real = questions.compare
+    monkeypatch.setattr(questions, "compare", lambda *given: compared.append(given) or real(*given))
+    await stage.room.start_up()
+    mission_id = await flying(stage)
+    await stage.until_true(lambda: len(stage.journal.of_kind(mission_id, PlanChosen)) == 2)
+    left, chosen = (one.place for one in stage.journal.of_kind(mission_id, PlanChosen))
+    _, beside = await stage.room.questions.expected_time(mission_id, FRAME.to_geo(0, -20), instead_of=chosen)
+    assert beside is not None
+    assert left in compared[0][-1]
+    await stage.room.shut_down()
