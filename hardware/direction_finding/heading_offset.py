@@ -55,6 +55,19 @@ class _Fits:
     information: NDArray[np.float64]
 
 
+@dataclass(frozen=True, slots=True)
+class _Climb:
+    """Where m climbers are after a step: x as in _Fits, value: (m,) log likelihood there, residual, weight: (m, k),
+    damping: (m,) Levenberg's, climbing: (m,) whether each still rises."""
+
+    x: NDArray[np.float64]
+    value: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    climbing: NDArray[np.bool_]
+
+
 def heading_offset(
     places_m: NDArray[np.float64],
     bearing_deg: NDArray[np.float64],
@@ -71,7 +84,7 @@ def heading_offset(
     z, sigma = np.radians(bearing_deg), np.maximum(np.radians(sigma_deg), SIGMA_FLOOR)
     starts = np.array([[*_crossing(places_m, z - d), d] for d in _STARTS])
     with_offset = np.repeat([True, False], len(starts))
-    x = np.vstack([starts, starts * (1.0, 1.0, 0.0)])
+    x = np.vstack([starts, starts * np.array([1.0, 1.0, 0.0])])
     fits = _likeliest(places_m, z, sigma, outlier_probability, x, with_offset)
     best = int(np.argmax(fits.log_likelihood[: len(starts)]))
     gain = 2.0 * float(fits.log_likelihood[best] - fits.log_likelihood[~with_offset].max())
@@ -115,30 +128,38 @@ def _likeliest(
         square = np.maximum(np.sum(off**2, axis=-1), _NEAREST_M2)
         return np.stack([off[..., 1] / square, -off[..., 0] / square, np.ones_like(square)], axis=-1)
 
-    free = np.column_stack([np.ones((len(x), 2)), with_offset])
-    value, residual, weight = look(x)
-    damping: NDArray[np.float64] = np.full(len(x), 1e-3)
-    climbing: NDArray[np.bool_] = np.full(len(x), True)
-    for _ in range(_STEPS):
-        by = slopes(x) * free[:, None, :]
-        information: NDArray[np.float64] = np.einsum("mki,mk,mkj->mij", by, weight, by)
+    def step(at: _Climb) -> _Climb:
+        """Each climber goes where its own quadric has its top, if that is no lower; else it will look nearer."""
+        by = slopes(at.x) * free[:, None, :]
+        information = _information(by, at.weight)
         diagonal: NDArray[np.float64] = np.einsum("mii->mi", information)
-        damped: NDArray[np.float64] = (
-            information + np.eye(3) * (damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
+        damped = information + np.eye(3) * (at.damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
+        uphill: NDArray[np.float64] = np.einsum("mki,mk->mi", by, at.weight * at.residual)
+        tried = at.x + np.linalg.solve(damped, uphill[..., None])[..., 0]
+        value, residual, weight = look(tried)
+        risen = value - at.value
+        better = at.climbing & (risen >= 0.0)
+        return _Climb(
+            x=_rows(better, tried, at.x),
+            value=_rows(better, value, at.value),
+            residual=_rows(better, residual, at.residual),
+            weight=_rows(better, weight, at.weight),
+            damping=_rows(better, np.maximum(at.damping / 5.0, 1e-9), at.damping * 10.0),
+            climbing=at.climbing & ~(better & (risen < _SETTLED)),
         )
-        uphill: NDArray[np.float64] = np.einsum("mki,mk->mi", by, weight * residual)
-        tried: NDArray[np.float64] = x + np.linalg.solve(damped, uphill[..., None])[..., 0]
-        there = look(tried)
-        risen = there[0] - value
-        better = climbing & (risen >= 0.0)
-        x, value = _rows(better, tried, x), _rows(better, there[0], value)
-        residual, weight = _rows(better, there[1], residual), _rows(better, there[2], weight)
-        damping = _rows(better, np.maximum(damping / 5.0, 1e-9), damping * 10.0)
-        climbing &= ~(better & (risen < _SETTLED))
-        if not climbing.any():
+
+    free = np.column_stack([np.ones((len(x), 2)), with_offset])
+    at = _Climb(x, *look(x), damping=np.full(len(x), 1e-3), climbing=np.full(len(x), True))
+    for _ in range(_STEPS):
+        at = step(at)
+        if not at.climbing.any():
             break
-    by = slopes(x)
-    return _Fits(x, value, np.einsum("mki,mk,mkj->mij", by, weight, by))
+    return _Fits(at.x, at.value, _information(slopes(at.x), at.weight))
+
+
+def _information(by: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 3, 3) J' W J of the slopes (m, k, 3) and weights (m, k)."""
+    return np.einsum("mki,mk,mkj->mij", by, weight, by)
 
 
 def _rows(which: NDArray[np.bool_], new: NDArray[np.float64], old: NDArray[np.float64]) -> NDArray[np.float64]:
