@@ -1,8 +1,5 @@
 """The vehicle adapter on a simulated autopilot without sockets: both step in the time of a SteppedLoop."""
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none)
-
 from __future__ import annotations
 
 import asyncio

@@ -1,8 +1,5 @@
 """MAVLink frames in a stream of bytes, and those messages in them that a takeover is judged by."""
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none)
-
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ Sends MANUAL_CONTROL twenty times a second to a vehicle's address, and reads fro
 sticks: pitch, roll, throttle, yaw. Ends with its input.
 """
 
-# pyright: reportMissingTypeStubs=false
-
 from __future__ import annotations
 
 import socket

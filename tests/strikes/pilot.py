@@ -3,8 +3,6 @@
 The pilot's radio has no delay, so it is put in at the vehicle's end of the proxy.
 """
 
-# pyright: reportMissingTypeStubs=false
-
 from __future__ import annotations
 
 import asyncio

@@ -1,8 +1,5 @@
 """The ArduCopter flavour: streams nothing unasked, GUIDED and BRAKE, yaw by CONDITION_YAW, disarms while waiting."""
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none; its generated dialects are typed well enough)
-
 from __future__ import annotations
 
 import math

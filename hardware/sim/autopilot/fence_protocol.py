@@ -4,9 +4,6 @@ An upload takes effect as a whole with its last item. A repeated item of a finis
 a lost acknowledgement looks like a failure to the sender although the fence is there.
 """
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none; its generated dialects are typed well enough)
-
 from __future__ import annotations
 
 from typing import Any

@@ -4,9 +4,6 @@ A flavour gives modes their numbers and says how commands, sticks and failsafes 
 behaviour was measured on PX4 1.16 SIH and ArduCopter 4.7 SITL).
 """
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none; its generated dialects are typed well enough)
-
 from __future__ import annotations
 
 import math

@@ -1,8 +1,5 @@
 """The PX4 flavour: main and sub modes, reposition with yaw, return by climbing first, sticks that take over."""
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none; its generated dialects are typed well enough)
-
 from __future__ import annotations
 
 import math

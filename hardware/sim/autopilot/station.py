@@ -1,8 +1,5 @@
 """The MAVLink side: streams at their rates in simulated time, commands, parameters. Bytes in, bytes out; no socket."""
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none; its generated dialects are typed well enough)
-
 from __future__ import annotations
 
 import math

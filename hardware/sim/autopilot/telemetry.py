@@ -1,8 +1,5 @@
 """One builder a MAVLink message: the firmware's state as the message an autopilot would send now."""
 
-# pyright: reportMissingTypeStubs=false
-# (pymavlink has none; its generated dialects are typed well enough)
-
 from __future__ import annotations
 
 import math
