@@ -141,7 +141,7 @@ def main() -> None:
         plain("truth in C95, at least", round(least[3], 1), "%", note=least[0]),
         plain("error beyond three times stated, at most", round(most[4], 1), "%", note=most[0]),
     ]
-    title, page = "Files of bearings from elsewhere", "direction-finding.md#bearings-of-other-people"
+    title, page = "Files of bearings from elsewhere", "direction-finding.md#files-of-bearings"
     write(arguments.out, "bearing_files", title, begun, figures, tables=[table], page=page)
 
 

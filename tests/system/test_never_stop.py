@@ -25,7 +25,7 @@ NEVER_STOP: dict[str, Any] = {
     "planner": {"seed": 3},
 }
 """Long enough that legs tell as much as a turn at one place or another, whatever chance has in store."""
-
+A_SECOND_LEG: dict[str, Any] = {**NEVER_STOP, "localization": {"minimum_places": 3}}
 
 YAW = {"px4": 192, "ardupilot": 115}
 """MAV_CMD by which the nose is sent somewhere in flight: reposition, or condition yaw."""
@@ -35,7 +35,7 @@ FLIGHT = {16, 20, 21, 22, 115, 176, 192, 400}
 
 async def in_a_swing(operator: Console, vehicle: SimulatedAutopilot, flavour: str) -> None:
     """One turn was made; the craft is on its second leg, and its nose was sent somewhere several times."""
-    await operator.draft(**NEVER_STOP)
+    await operator.draft(**A_SECOND_LEG)
     await operator.ready(120)
     await operator.watch()
     await operator.start()
