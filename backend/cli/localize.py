@@ -13,7 +13,7 @@ import typer
 
 from backend.cli.edge import print_json, remark, stop
 from backend.search.reported import compass_share_deg
-from backend.search.source_priors import unknown_errors
+from backend.search.source_priors import LEAST_OUTLIERS, unknown_errors
 from backend.settings import settings_of
 from backend.spec import ErrorModel
 from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
@@ -267,14 +267,17 @@ def _own_sigma_deg(bearing: RecordedBearing) -> float:
 
 
 def _fold(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
-    """With outliers as a joint belief that knows everything else, whose cells are as fine as the bearings cross."""
-    if outliers > 0.0:
-        known = fold_joint(joint_prior(problem, otherwise=_known(outliers)), bearings)
-        return GridBelief(**{one.name: getattr(known, one.name) for one in fields(GridBelief)})
-    try:
-        return fold(problem, bearings)
-    except InconsistentBearings:
-        return None
+    """As a joint belief that knows everything else, whose cells are as fine as the bearings cross.
+
+    None when no bearing may be wrong and they contradict each other.
+    """
+    if outliers == 0.0:
+        try:
+            fold(problem, bearings)
+        except InconsistentBearings:
+            return None
+    known = fold_joint(joint_prior(problem, otherwise=_known(max(outliers, LEAST_OUTLIERS))), bearings)
+    return GridBelief(**{one.name: getattr(known, one.name) for one in fields(GridBelief)})
 
 
 def _known(outliers: float) -> ErrorPrior:

@@ -94,13 +94,14 @@ def drawn(kind: Kind, rng: np.random.Generator) -> tuple[str, tuple[float, float
     return "\n".join(lines) + "\n", (float(east), float(north))
 
 
-def answered(kind: Kind, seed: int, number: int) -> Answer:
+def answered(kind: Kind, seed: int, number: int, *options: str) -> Answer:
+    """options: of the command, besides --json and --range."""
     content, (east, north) = drawn(kind, np.random.default_rng([seed, number]))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bearings.csv"
         path.write_text(content)
         ranged = ["--range", f"{RANGE_BY_SQUARE * kind.half_m:g}"]
-        told = json.loads(CliRunner().invoke(APP, [str(path), "--json", *ranged]).stdout)
+        told = json.loads(CliRunner().invoke(APP, [str(path), "--json", *ranged, *options]).stdout)
     if told["estimate"] is None:
         return Answer(math.inf, math.inf, held=False)
     found = FRAME.to_enu(Place(told["estimate"]["lat"], told["estimate"]["lon"]))
