@@ -21,7 +21,7 @@ from uuid import uuid4
 
 from backend.auth.buckets import Buckets, neighbourhood
 from backend.kraken import FEWEST_COLUMNS, KrakenRefused, read_kraken
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons import datagrams as reasons
 from backend.reasons.search import KrakenUnreadable
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
@@ -214,7 +214,7 @@ class BearingFeed(asyncio.DatagramProtocol):
         self.refused += 1
         before = self._refused.pop(address, None)
         number = 1 if before is None else before.number + 1
-        self._refused[address] = _Refused(number, name, carried(reason), self.now())
+        self._refused[address] = _Refused(number, name, reason, self.now())
         if len(self._refused) > MOST_REFUSED:
             self._refused.popitem(last=False)
         now_s = self.steady()

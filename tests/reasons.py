@@ -9,8 +9,7 @@ from itertools import pairwise
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from typing_extensions import TypeAliasType
-
+from backend.reasons.catalogue import reason_classes
 from planner.reason import Reason, remedy_of, text_of
 
 PLAIN: dict[type, tuple[object, ...]] = {
@@ -78,9 +77,9 @@ def _instances(reason: type[Reason], inside: tuple[type, ...]) -> list[Reason]:
     return [reason(**chosen) for chosen in (first, *others)]
 
 
-def _holds(reason: type[Reason], union: TypeAliasType) -> bool:
-    """Whether a reason of the union may hold any other of it, without end."""
-    return any(union in (hint, *get_args(hint)) for hint in get_type_hints(reason).values())
+def _holds_another(reason: type[Reason]) -> bool:
+    """Whether it may hold any other reason, without end."""
+    return any(Reason in (hint, *get_args(hint)) for hint in get_type_hints(reason).values())
 
 
 def _values(hint: Any, inside: tuple[type, ...]) -> Sequence[object]:
@@ -91,8 +90,8 @@ def _values(hint: Any, inside: tuple[type, ...]) -> Sequence[object]:
         return arguments
     if origin in (Union, UnionType):
         return [value for one in arguments if one not in inside for value in _values(one, inside)]
-    if isinstance(hint, TypeAliasType):
-        return [example(one) for one in classes_of(get_args(hint.__value__)[0]) if not _holds(one, hint)]
+    if hint is Reason:
+        return [example(one) for one in reason_classes() if not _holds_another(one)]
     if origin is tuple and arguments[-1] is Ellipsis:
         items = _values(arguments[0], inside)
         return [tuple(items[:1]), tuple(items[:1]) * 2, *((item,) for item in items[1:])]

@@ -18,7 +18,6 @@ from backend.events import (
     Supposition,
     SweepRejected,
 )
-from backend.reasons import carried
 from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.request import SamplesNotStored
 from backend.search.antenna import antennas, corrected
@@ -104,10 +103,10 @@ def _pattern(upload: PatternUpload, frequency_hz: float) -> AntennaPattern:
     try:
         pattern = parse_pattern(upload.filename, upload.text)
     except PatternError as error:
-        raise MissionInputError(carried(error.reason), "pattern") from error
+        raise MissionInputError(error.reason, "pattern") from error
     mismatch = pattern.other_frequency(frequency_hz)
     if mismatch is not None:
-        raise MissionInputError(carried(mismatch), "pattern")
+        raise MissionInputError(mismatch, "pattern")
     return pattern
 
 

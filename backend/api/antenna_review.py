@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from backend.events import BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.antenna import antenna_flown, antennas, corrected, correction_flown, same_pattern
 from backend.search.counted import counted
 from backend.search.machine import bearings_corrected, turned
@@ -40,7 +40,7 @@ def antenna_review(recorded: Sequence[Recorded], emitter_id: str | None, ours: A
     belief = _last_belief(recorded, chosen)
     doubt: Reason | None = None if belief is None else _turned_together(belief)
     if found is not None and found.significant:
-        doubt = carried(NotTheMeasuredAntenna(pattern.name, max(found.repeats_db, found.uneven_db), found.sweeps))
+        doubt = NotTheMeasuredAntenna(pattern.name, max(found.repeats_db, found.uneven_db), found.sweeps)
     place = None if belief is None else _localized_at(belief)
     refined = None if place is None or doubt is None else refined_pattern(kept, place, in_file)
     return AntennaReview(

@@ -9,7 +9,6 @@ from backend.api.map_files import in_thread
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.api.ways import ways_folder
 from backend.maps.brought_ways import read_brought_ways
-from backend.reasons import carried
 from backend.reasons.request import BundleFileWrong, BundleUnreadable
 from backend.store.brought import WAYS, BundleRefused, read_bundle
 from backend.store.entries import JournalConflict
@@ -36,7 +35,7 @@ async def bring_in_bundle(
     try:
         brought = await services.workers.run(read_bundle, content)
     except BundleRefused as refused:
-        raise ApiProblem(422, carried(refused.reason)) from refused
+        raise ApiProblem(422, refused.reason) from refused
     try:
         ways = None if brought.ways is None else await services.workers.run(read_brought_ways, brought.ways)
     except ValueError as error:

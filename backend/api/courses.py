@@ -27,7 +27,7 @@ from backend.events import (
 )
 from backend.events.review import VariantName
 from backend.mission.review import variants_of
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.spec import Place
 from backend.wire.courses import Course, CoursePoint, MissionCourses
@@ -54,7 +54,7 @@ async def get_courses(mission_id: MissionId, services: ServicesDep, emitter: Emi
         try:
             wanted[name] = asked, await another_antenna(services, mission_id, recorded, asked), None
         except MissionInputError as error:
-            wanted[name] = asked, None, carried(error.reason)
+            wanted[name] = asked, None, error.reason
     async with services.planning:
         found = await apart(services, (1 + len(wanted)) * len(recorded), courses, recorded, wanted, emitter)
     if found is None:
@@ -115,7 +115,7 @@ def courses(
             try:
                 points = _points(suppose(recorded, asked, None, antenna), asked, at_s, truth)
             except MissionConflict as error:  # samples that were not stored
-                problem = carried(error.reason)
+                problem = error.reason
         found.append(Course(name=name, wanted=asked, points=points, problem=problem))
     ended = [r.at_utc.timestamp() - began_s for r in recorded if isinstance(r.event, MissionEnded)]
     counted_s = [at_s[fact.bearing_id] for fact in flown.counted]

@@ -30,7 +30,7 @@ from backend.auth.principal import Principal, local_person
 from backend.auth.registry import MachineToken, Session
 from backend.auth.sessions import Entry
 from backend.permissions import BEFORE_PEOPLE, ENDPOINTS, Need
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.access import BehindProxy, CallNotListed, FirstAdminNeeded, OriginMissing, SignInNeeded
 from backend.reasons.request import UnknownToken
 from backend.wire.problem import problem
@@ -114,7 +114,7 @@ class Gate:
             _permit(access, visitor, scope, name, need)
         except Denied as error:
             _note(access, scope, name, visitor.principal, address, error.status, error.reason.code)
-            found = problem(error.status, carried(error.reason))
+            found = problem(error.status, error.reason)
             await refuse(found, scope, receive, send, retry_after(error.reason))
             return
         state = scope.setdefault("state", {})
@@ -209,7 +209,7 @@ def _permitted_still(access: Access, scope: Scope, name: str, need: Need, receiv
             visitor = _visitor(access, scope, address_of(scope))
             _permit(access, visitor, scope, name, need)
         except Denied as error:
-            raise ApiProblem(error.status, carried(error.reason), headers=retry_after(error.reason)) from None
+            raise ApiProblem(error.status, error.reason, headers=retry_after(error.reason)) from None
         scope["state"]["principal"] = visitor.principal
         return message
 

@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 
 from backend.auth.keeping import Denied
 from backend.ports import FactRefused, JournalDamaged
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons import request as reasons
 from backend.reasons.access import TooManyTries
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
@@ -158,13 +158,13 @@ async def on_reasoned(_: Request, error: Exception) -> JSONResponse:
     """The status by the error's class (STATUSES), the words by its reason."""
     assert isinstance(error, ReasonedError)
     status = next(status for kind, status in STATUSES if isinstance(error, kind))
-    return respond(problem(status, carried(error.reason)))
+    return respond(problem(status, error.reason))
 
 
 async def on_denied(_: Request, error: Exception) -> JSONResponse:
     """With the seconds to wait, where there are any."""
     assert isinstance(error, Denied)
-    return respond(problem(error.status, carried(error.reason)), retry_after(error.reason))
+    return respond(problem(error.status, error.reason), retry_after(error.reason))
 
 
 def retry_after(reason: AnyReason) -> dict[str, str] | None:

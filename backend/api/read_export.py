@@ -12,7 +12,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from backend.api.dependencies import ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
-from backend.reasons import carried
 from backend.reasons.request import ExportUnreadable
 from backend.store.exported import ExportedLater, NotExported, export_of_today
 from backend.wire.resources import ExportedMission, Track, TrackFact
@@ -55,7 +54,7 @@ async def read_exported_mission(request: Request, services: ServicesDep) -> Resp
         else:
             answer = await services.workers.run(read_export, text)
     except ExportRefused as refused:
-        raise ApiProblem(422, carried(refused.reason)) from refused
+        raise ApiProblem(422, refused.reason) from refused
     return Response(answer, media_type="application/json")
 
 

@@ -21,7 +21,6 @@ from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.bearing_file import read_bearing_file
 from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
-from backend.reasons import carried
 from backend.reasons import request as reasons
 from backend.search.errors import MissionInputError
 from backend.search.importing import Upload, imported_before
@@ -130,7 +129,7 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
         pulses = _pulses(form)
         recording = await workers.run(_parsed, names, form.tag, form.frequency_hz, pulses)
     except (RecordingError, SpectrumError) as error:
-        raise MissionInputError(carried(renamed(error.reason, owners)), "files") from error
+        raise MissionInputError(renamed(error.reason, owners), "files") from error
     pattern = None if form.antenna is None else await _pattern(form.antenna, workers)
     first = next(iter(names.values()))
     return Upload(
@@ -153,7 +152,7 @@ async def _pattern(file: UploadFile, workers: Workers) -> AntennaPattern:
     except UnicodeDecodeError as error:
         raise MissionInputError(FileUnreadable(_called(file), error.reason), "antenna") from error
     except PatternError as error:
-        raise MissionInputError(carried(error.reason), "antenna") from error
+        raise MissionInputError(error.reason, "antenna") from error
 
 
 def _called(file: UploadFile) -> str:

@@ -22,7 +22,7 @@ from backend.events import (
     Supposition,
     SweepRejected,
 )
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.area import corner_of
 from backend.search.localization import Localization
 from backend.search.planning import next_place
@@ -268,7 +268,7 @@ def _plan(
     try:
         return next_place(task, belief, measured, here, number, (), threads=1), None
     except PlannerError as error:
-        return None, carried(error.reason)
+        return None, error.reason
 
 
 def _step(bearings: int, then: BeliefUpdated, flown: BeliefUpdated | None) -> WhatIfStep:

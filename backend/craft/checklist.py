@@ -20,7 +20,7 @@ from backend.craft.safety import Limits, Situation, battery_to_return_percent, l
 from backend.craft.way_home import ABOVE_HOME_M
 from backend.events import CheckFact
 from backend.ports import Grounds
-from backend.reasons import Reason, carried, checks
+from backend.reasons import Reason, checks
 from backend.reasons.refusals import NoHome
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways
@@ -187,13 +187,13 @@ def _pattern(mission: MissionSpec, equipment: CraftEquipment) -> CheckFact:
     for emitter in mission.emitters:
         other = pattern.other_frequency(emitter.frequency_hz)
         if other is not None:
-            return _fact("pattern", False, carried(other), blocking=False)
+            return _fact("pattern", False, other, blocking=False)
     return _fact("pattern", True, checks.PatternInUse(pattern.name))
 
 
 def check_fact(check: PreflightCheck) -> CheckFact:
     """The hardware's check, as facts and the wire carry it."""
-    return CheckFact(name=check.name, ok=check.ok, reason=carried(check.reason), blocking=check.blocking)
+    return CheckFact(name=check.name, ok=check.ok, reason=check.reason, blocking=check.blocking)
 
 
 def _fact(name: CheckName, ok: bool, reason: Reason, blocking: bool = True) -> CheckFact:

@@ -16,7 +16,7 @@ from itertools import pairwise, product
 from backend.craft.endurance import CLIMB_M_S, Endurance, in_strong_wind
 from backend.craft.safety import Limits, Situation, battery_vetoes
 from backend.events import FIRST_CRAFT
-from backend.reasons import Reason, carried, checks, safety
+from backend.reasons import Reason, checks, safety
 from backend.search.choosing import choose_place
 from backend.search.planning import way_to
 from backend.search.state import SearchState
@@ -77,7 +77,7 @@ def first_turn(
         place = onward.chosen or _next_place(task, search, here, situation.now_s, threads, onward)
         points = [here, *way_to(task.first, here, limits.frame.to_enu(place))]
     except PlannerError as error:  # no place or no way: in flight there is nothing to plan, and it comes home
-        return FirstTurn(carried(error.reason))
+        return FirstTurn(error.reason)
     legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
     short = _short(limits, climbed, legs)
     far_m = sum(math.hypot(*leg) for leg in legs)

@@ -18,7 +18,7 @@ from backend.craft.safety import ground_return_vetoes, return_vetoes
 from backend.craft.under_way import UnderWay
 from backend.craft.way_home import ABOVE_HOME_M, Point2, way_home
 from backend.craft.work import CLIMB_FIRST_M, LEVEL_M, Work
-from backend.reasons import Reason, carried, safety
+from backend.reasons import Reason, safety
 from hardware.ports import HardwareError, NotInControl, VehicleUnreachable
 from hardware.readings import Place
 
@@ -42,7 +42,7 @@ async def fly_home(work: Work, under_way: UnderWay) -> inputs.AutopilotReturns |
     except (NotInControl, VehicleUnreachable):
         raise
     except HardwareError as error:
-        because = carried(error.reason)
+        because = error.reason
     if because is None:
         if vehicle.telemetry().in_air is not False:
             await vehicle.land()

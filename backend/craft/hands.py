@@ -12,7 +12,7 @@ from typing import Literal
 
 from backend.craft import effects, inputs
 from backend.craft.state import AUTOMATIC, CraftState
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.flight import StepBroke, StepName
 from hardware.ports import Clock, HardwareError, NotInControl, Vehicle
 from planner.types import PlannerError
@@ -129,9 +129,9 @@ class Hands:
         except NotInControl as error:
             self._look()
             unnoticed = self._craft().phase in AUTOMATIC
-            result = self._failure(name, carried(error.reason)) if unnoticed else None
+            result = self._failure(name, error.reason) if unnoticed else None
         except (HardwareError, PlannerError) as error:
-            result = self._failure(name, carried(error.reason))
+            result = self._failure(name, error.reason)
         except Exception:
             log.exception("%s: %s failed", self._craft().craft_id, name)
             result = self._failure(name, StepBroke(name))

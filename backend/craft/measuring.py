@@ -17,7 +17,7 @@ from backend.craft.listening import Listening
 from backend.craft.sector_turns import Turned, TurnShown, turn_as_planned
 from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejected
 from backend.ports import SectorShown
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.sector import TurnPlan
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
 from backend.search.turn_schedule import turn_schedule
@@ -131,7 +131,7 @@ async def _result(
         if telemetry.position is None:
             raise VehicleError(PositionLost()) from error
         unheard = emitter.kind == "pulsed" and not any(sample.detected for sample in samples)
-        reason = _unheard(not_given) if unheard else carried(error.reason)
+        reason = _unheard(not_given) if unheard else error.reason
         told = silence if unheard and samples and not_given is None else None
         return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason, silence=told))
     sweep = turned.as_turned(sweep)

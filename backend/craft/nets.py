@@ -15,7 +15,6 @@ from shapely.geometry.base import BaseGeometry
 
 from backend.craft.safety import Limits
 from backend.events import CheckFact
-from backend.reasons import carried
 from hardware.fence import FencePolygon, MissionNets, NetsPlan
 from hardware.frame import LocalFrame
 from hardware.ports import Vehicle, VehicleError
@@ -92,7 +91,7 @@ async def nets_check(vehicle: Vehicle, limits: Limits) -> CheckFact:
     try:
         plan = await vehicle.plan_nets(mission_nets(limits))
     except VehicleError as error:
-        return CheckFact(name="nets", ok=False, reason=carried(error.reason), blocking=True)
+        return CheckFact(name="nets", ok=False, reason=error.reason, blocking=True)
     return CheckFact(name="nets", ok=True, reason=to_set(plan), blocking=True)
 
 

@@ -16,7 +16,7 @@ from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
 from backend.craft.sweep_turns import turn_and_listen
 from backend.events import TurnFact
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.sector import CIRCLE_DEG, TOLERANCE_DEG, GoOn, Stop, TurnPlan, look, turn_fact
 from backend.search.turn_schedule import Round
 from backend.spec import EmitterSpec, MissionSpec
@@ -87,7 +87,7 @@ async def _through_sector(
 ) -> Turned:
     vehicle, offset = equipment.vehicle, equipment.pattern.offset_to_nose_deg
     assert plan.begin_deg is not None
-    shown.begin_deg, shown.goal_deg, shown.because = plan.begin_deg, plan.width_deg, carried(plan.why)
+    shown.begin_deg, shown.goal_deg, shown.because = plan.begin_deg, plan.width_deg, plan.why
     heading_deg = vehicle.telemetry().heading_deg
     swing = 0.0 if heading_deg is None else math.remainder(plan.begin_deg - offset - heading_deg, CIRCLE_DEG)
     if abs(swing) > FACING_DEG:
@@ -106,7 +106,7 @@ async def _through_sector(
         if isinstance(decided, Stop):
             return Turned(began_s, ended_s, turn_fact(plan, begin_deg, turned, steps, decided))
         steps.append(decided)
-        shown.goal_deg, shown.because = turned + decided.by_deg, carried(decided.why)
+        shown.goal_deg, shown.because = turned + decided.by_deg, decided.why
         await vehicle.turn(rate_deg_s, decided.by_deg)
 
 

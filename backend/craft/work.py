@@ -18,7 +18,7 @@ from backend.craft.measuring import Measured, measure
 from backend.craft.on_the_way import heard_on_leg, nose_swung, swings_of
 from backend.craft.recent_telemetry import recent
 from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, turn_vetoes
-from backend.reasons import Reason, carried, safety
+from backend.reasons import Reason, safety
 from backend.search.choosing import choose_place
 from backend.search.closed_by_ground import closed_by_ground
 from backend.search.planning import way_to
@@ -95,7 +95,7 @@ class Work:
         try:
             way: list[tuple[float, float]] = await asyncio.to_thread(self._way, end)
         except PlannerError as error:
-            return inputs.WorkVetoed((carried(error.reason),))
+            return inputs.WorkVetoed((error.reason,))
         await recent(self.situation)
         altitude, levelled, swung = self.level_altitude(way), False, list[Swings]()
         while way:
@@ -113,7 +113,7 @@ class Work:
             try:
                 await self.equipment.vehicle.goto(leg, altitude, speed, facing, swinging)
             except PlaceRefused as error:
-                return inputs.PlaceNotTaken(effect.place, carried(error.reason))
+                return inputs.PlaceNotTaken(effect.place, error.reason)
             if swinging is not None and swinging.swings.swinging_s > 0.0:
                 swung.append(swinging.swings)
         here = self._here()
@@ -198,7 +198,7 @@ class Work:
                     closed,
                 )
             except PlannerError as error:
-                return inputs.NothingToPlan(carried(error.reason))
+                return inputs.NothingToPlan(error.reason)
             await recent(self.situation)
             vetoes = self.vetoes_against(choice.place)
             tried += 1

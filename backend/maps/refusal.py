@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from backend.reasons import Reason, carried
 from backend.reasons.maps import ArchiveReason, GeometryFault
 from backend.reasons.request import NothingThere
 from planner.reason import ReasonedError
@@ -12,11 +11,6 @@ from planner.reason import ReasonedError
 
 class MapRefused(ReasonedError):
     """A file, or an area, cannot be used as a map, as an overlay or on one."""
-
-    @property
-    def reason(self) -> Reason:
-        """Of any room: the wire's union holds them all."""
-        return carried(super().reason)
 
 
 class ArchiveUnusable(MapRefused):
@@ -37,11 +31,6 @@ class NotStored(ReasonedError, LookupError):
 
     def __init__(self, what: Literal["map", "overlay", "terrain"], which: str) -> None:
         super().__init__(NothingThere(what, which))
-
-    @property
-    def reason(self) -> Reason:
-        """As the API answers it, with 404."""
-        return carried(super().reason)
 
 
 class PartUnusable(Exception):

@@ -18,7 +18,7 @@ from backend.events import Event, NetsNoted, NetsPutBack
 from backend.mission.equipment import MissionEquipment
 from backend.mission.records import Records
 from backend.ports import FactRefused, JournalUnavailable
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.safety import PilotControls
 from backend.search.task import SearchTask
 from hardware.fence import Nets
@@ -96,7 +96,7 @@ class NetsKeeper:
                     return PilotControls()
                 await self._hang(mission_id, craft, task, None, record)
             except HardwareError as error:
-                return carried(error.reason)
+                return error.reason
         return None
 
     async def change(self, mission_id: str, craft: CraftEquipment, task: SearchTask, record: Record) -> Reason | None:
@@ -105,7 +105,7 @@ class NetsKeeper:
         try:
             await self._hang(mission_id, craft, task, None if owed is None else owed.before, record)
         except HardwareError as error:
-            return carried(error.reason)
+            return error.reason
         return None
 
     async def _hang(

@@ -22,7 +22,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
 from backend.events import BearingMeasured
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search import area
 from backend.search.ground_ways import LaidOut, Traced, along_roads, ground_of, on_foot, within_reach
 from backend.search.localization import Localization
@@ -154,7 +154,7 @@ def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place,
         error_then_m=now * left,
         mean_s=float(decision.times.mean()) if len(decision.times) else None,
         p90_s=in_nine_of_ten(decision.times),
-        reason=carried(decision.reason),
+        reason=decision.reason,
         bearings=len(bearings),
         hop=hop,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.refusals import NoMission
 from planner.reason import ReasonedError
 
@@ -17,11 +17,6 @@ class MissionInputError(ReasonedError, ValueError):
     def __reduce__(self) -> tuple[type[MissionInputError], tuple[Reason, str]]:
         return type(self), (self.reason, self.field)
 
-    @property
-    def reason(self) -> Reason:
-        """Of any room: the wire's union holds them all."""
-        return carried(super().reason)
-
 
 class MissionNotFound(ReasonedError, LookupError):
     """There is no mission with this id."""
@@ -32,8 +27,3 @@ class MissionNotFound(ReasonedError, LookupError):
 
 class MissionConflict(ReasonedError, RuntimeError):
     """What the mission does now does not allow it."""
-
-    @property
-    def reason(self) -> Reason:
-        """Of any room: the wire's union holds them all."""
-        return carried(super().reason)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from backend.events import BearingMeasured, CandidateFact
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.localization import Localization
 from backend.search.planning import candidate_facts, cost_of, decide, in_nine_of_ten, to_plan, way_to
 from backend.spec import Place
@@ -120,7 +120,7 @@ def compare(
     else:
         without = [task.frame.to_enu(p) for p in avoid]
         rules = rules_against(problem, belief, here, by_claim=found.by_claim, without=without)
-    return replace(compared, rules=tuple(carried(rule) for rule in rules))
+    return replace(compared, rules=tuple(rule for rule in rules))
 
 
 def _way(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:
@@ -139,7 +139,7 @@ def preview(task: Localization, start: Place, threads: int) -> Preview:
     return Preview(
         start=start,
         first_place=task.place(decision.x, decision.y),
-        reason=carried(decision.reason),
+        reason=decision.reason,
         mean_s=float(times.mean()) if len(times) else None,
         p90_s=in_nine_of_ten(times),
         times_s=[float(t) for t in times],

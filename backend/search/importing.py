@@ -20,7 +20,7 @@ from backend.events import (
     RecordingImported,
     SweepRejected,
 )
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons import search as reasons
 from backend.reasons.refusals import NoSuchEmitter
 from backend.search.antenna import antenna_fact
@@ -98,7 +98,7 @@ def begun(state: SearchState, upload: Upload, pieces: int) -> tuple[EmitterSpec,
     its sweeps or bearings. Raises MissionInputError for too many, and for an emitter that is not sought."""
     if pieces > MOST_SWEEPS:
         raise MissionInputError(reasons.RecordingTooLong(pieces, MOST_SWEEPS), "file")
-    remarks: list[Reason] = [carried(remark) for remark in upload.recording.remarks]
+    remarks: list[Reason] = list(upload.recording.remarks)
     last = max([state.place_number, *(bearing.place_number for bearing in state.measured)])
     return _emitter_of(state.mission, upload.emitter_id), remarks, last
 
@@ -135,7 +135,7 @@ def import_facts(
     pattern = ours if upload.pattern is None else upload.pattern
     mismatch = None if upload.pattern is None else pattern.other_frequency(emitter.frequency_hz)
     if mismatch is not None:
-        raise MissionInputError(carried(mismatch), "antenna")
+        raise MissionInputError(mismatch, "antenna")
     first_s = float(recording.sweeps[0].sweep.at_s[0])
     began_s = upload.at_s if upload.at_s is not None else (first_s if CLOCK_S <= first_s < LATEST_S else None)
     shift_s = 0.0 if began_s is None else began_s - first_s

@@ -15,7 +15,7 @@ import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from backend.events import BearingMeasured, BeliefUpdated, HeardOnTheWay, LegSaid, SweepRejected
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.search import HeadingsAskew
 from backend.search import area
 from backend.search.belief_facts import errors_facts, estimate_fact
@@ -205,7 +205,7 @@ class Localization:
         doubt = offset if offset is not None and offset.significant else None
         shown = self.planning_belief(bearings) if folded is None else folded
         askew = () if doubt is None else (HeadingsAskew(doubt.offset_deg, doubt.std_error_deg),)
-        not_yet: list[Reason] = [*(carried(reason) for reason in said.reasons), *askew]
+        not_yet: list[Reason] = [*(reason for reason in said.reasons), *askew]
         fact = BeliefUpdated(
             emitter_id=self.emitter_id,
             bearings=len(bearings),
@@ -262,5 +262,5 @@ def localization(
         prior = prior_belief_of(problem, mission.sensor, emitter.movement)
     except PlannerError as error:
         index = mission.emitters.index(emitter)
-        raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
+        raise MissionInputError(error.reason, f"emitters.{index}.prior") from error
     return Localization(mission, emitter.emitter_id, frame, problem, prior, rule_of(mission, problem))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from backend.events import BeliefUpdated, PlanChosen
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.search import Localized
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways, next_place
@@ -56,5 +56,5 @@ def outlook(state: SearchState, task: SearchTask, platform: Place, threads: int)
     try:
         plan = next_place(localization, grid, emitter.bearings, here, state.place_number + 1, (), threads)
     except PlannerError as error:
-        return Outlook(belief, None, carried(error.reason))
+        return Outlook(belief, None, error.reason)
     return Outlook(belief, plan, None)

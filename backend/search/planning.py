@@ -14,7 +14,7 @@ from statistics import fmean, geometric_mean
 import numpy as np
 
 from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, CraftSource, ForecastFact, PlanChosen
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.search.localization import Localization
 from backend.search.planner_bearings import own_sigma_deg, source_name
 from backend.spec import MissionSpec
@@ -108,7 +108,7 @@ def _plan_fact(
         place_number=place_number,
         place=task.place(decision.x, decision.y),
         source="planner",
-        reason=carried(decision.reason),
+        reason=decision.reason,
         expected_time_s=mean,
         time_90_s=in_nine_of_ten(times),
         candidates=candidate_facts(task, decision),
@@ -317,7 +317,7 @@ def cost_of(
             rollouts=rollouts,
         )
     except PlannerError as error:
-        return Cost(None, None, None, 0, carried(error.reason))
+        return Cost(None, None, None, 0, error.reason)
     return Cost(found.mean, _finite(found.std_error), in_nine_of_ten(found.times), rollouts)
 
 

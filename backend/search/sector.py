@@ -22,7 +22,6 @@ import numpy as np
 
 from backend.events import BearingMeasured, TurnFact
 from backend.events.bearings import WHOLE_DEG
-from backend.reasons import carried
 from backend.reasons.turning import (
     BearingUncertain,
     ElsewherePossible,
@@ -199,7 +198,7 @@ def turn_fact(
         begin_deg=begin_deg % CIRCLE_DEG,
         planned_deg=plan.width_deg,
         turned_deg=turned_deg,
-        planned_because=carried(plan.why),
-        went_on_because=[carried(step.why) for step in steps],
-        stopped_because=carried(stopped.why),
+        planned_because=plan.why,
+        went_on_because=[step.why for step in steps],
+        stopped_because=stopped.why,
     )

@@ -9,7 +9,7 @@ from uuid import uuid4
 import numpy as np
 
 from backend.events import BearingMeasured, BearingSource, Peak, SilenceFact, SweepRejected, TurnFact
-from backend.reasons import Reason, carried
+from backend.reasons import Reason
 from backend.reasons.search import QualityTooLow, SweepIncomplete, SweepValue
 from backend.spec import Place, SensorSpec
 from hardware.readings import BearingReading, Sweep
@@ -58,7 +58,7 @@ def sweep_fact(
         return rejected(taken, sweep.position, quality, SweepIncomplete(unknown), binned, fitted)
     if not reading.accepted or reading.quality < sensor.minimum_quality:
         low = QualityTooLow(reading.quality, sensor.minimum_quality)
-        reason = low if reading.reason is None else carried(reading.reason)
+        reason = low if reading.reason is None else reading.reason
         told = silence if isinstance(reading.reason, NothingAboveNoise) else None
         return rejected(taken, sweep.position, reading.quality, reason, binned, fitted, reading.likelihood, told)
     return BearingMeasured(
@@ -80,7 +80,7 @@ def sweep_fact(
         measurement_time_s=measurement_time_s,
         heading_sigma_deg=reading.heading_sigma_deg,
         pattern_sigma_deg=reading.pattern_sigma_deg,
-        remarks=[carried(remark) for remark in reading.remarks],
+        remarks=list(reading.remarks),
         likelihood=reading.likelihood,
         samples_without_heading=sweep.samples_without_heading,
         taken_at_s=taken_at_s,

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.events import BearingSource, HeardOnTheWay, StretchFact
-from backend.reasons import carried
 from backend.spec import SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.on_the_way import OnTheWay, WayError, WayReadings, heard_on_the_way
@@ -50,8 +49,8 @@ def way_fact(
         leg_id=str(uuid4()),
         place_number=leg.place_number,
         counted=found.counted,
-        left_out=[carried(reason) for reason in found.left_out],
-        nose=[carried(one) for one in leg.nose],
+        left_out=list(found.left_out),
+        nose=list(leg.nose),
         stretches=_drawn(found),
         origin=leg.begin,
         readings=found.readings.packed() if found.counted else None,

@@ -12,7 +12,6 @@ from screen import OpenScreen
 from served import Server
 
 from backend.events import BeliefUpdated, Recorded, SafetyVetoed
-from backend.reasons import carried
 from backend.reasons.safety import PilotControls
 from tests.browser.by_thumb import EVERY_HAND, card, slide, touched
 from tests.browser.sweep import SIZES, TOO_WIDE
@@ -27,7 +26,7 @@ ANSWERED_MS = 180_000
 def vetoed(flown: list[Recorded]) -> list[Recorded]:
     """The same flight, with a place that was not taken half way."""
     half = len(flown) // 2
-    veto = flown[half].model_copy(update={"event": SafetyVetoed(craft_id="craft-1", reason=carried(PilotControls()))})
+    veto = flown[half].model_copy(update={"event": SafetyVetoed(craft_id="craft-1", reason=PilotControls())})
     told = [*flown[:half], veto, *flown[half:]]
     return [record.model_copy(update={"seq": seq}) for seq, record in enumerate(told, start=1)]
 

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
+
 import pytest
 
+import backend.reasons
+import hardware.reasons
+import planner.reasons
 from backend.reasons import ToldBefore
 from backend.reasons.catalogue import code_of, english_table, reason_classes
 from planner.reason import Reason
@@ -16,6 +23,14 @@ def test_says_whole_sentences(reason: type[Reason]) -> None:
     for one in examples(reason):
         if ToldBefore.__name__ not in repr(one):
             assert_well_said(one)
+
+
+@pytest.mark.parametrize("room", [planner.reasons, hardware.reasons, backend.reasons], ids=lambda room: room.__name__)
+def test_every_class_that_a_room_declares_is_in_the_union(room: ModuleType) -> None:
+    modules = [room, *(import_module(one.name) for one in iter_modules(room.__path__, f"{room.__name__}."))]
+    declared = {one for module in modules for one in vars(module).values() if isinstance(one, type)}
+    assert len(modules) > 1
+    assert {one for one in declared if hasattr(one, "english")} - {Reason} <= set(reason_classes())
 
 
 def test_no_two_reasons_share_a_code() -> None:

@@ -26,6 +26,7 @@ from backend.search.turn_schedule import turn_s
 from backend.spec import EmitterSpec, FlightSpec, MissionSpec, MovementSpec, PlannerSpec, Polygon, SensorSpec
 from hardware.readings import Place
 from planner.policy.actions import OTHER_ECHOES_M, SAME_PLACE_M
+from planner.reasons.choice import SoonestForFirst
 
 
 def task(**more: object) -> Localization:
@@ -111,7 +112,7 @@ def test_the_place_for_what_comes_first_says_for_whom_and_what_to_expect_of_each
     targets = {"a": (40.0, 80.0), "b": (260.0, 90.0)}
     wanted = [(localization(mission, HOME, name), [towards(0.0, -20.0, at)]) for name, at in targets.items()]
     choice = next_place_together(wanted, (0.0, -20.0), 2, (), 1, ranks=[2, 1])
-    assert choice.reason.code == "soonest_for_first"
+    assert isinstance(choice.reason, SoonestForFirst)
     assert (choice.reason.names, choice.reason.others) == (("hare 2",), 1)
     forecasts = {one.emitter_id: one.expected_time_s for one in choice.forecasts}
     assert forecasts["b"] == pytest.approx(choice.reason.first_time_s)
