@@ -1,13 +1,15 @@
 """From a bearing to its belief on the screen, stage by stage: one JSON object on standard output.
 
-    python -m tests.benchmarks.page_belief --bearings 12 --speedup 3
+    python -m tests.benchmarks.page_belief --missions 4 --speedup 1.5
+    python -m tests.benchmarks.page_belief --missions 1 --bearings 12 --speedup 1.5
 
-A mission is flown and its page watched. Times in ms of the wall: `server` from the arrival of the bearing's event in
-the browser to that of the belief or of its event, `frame` from there to that of the other, `page` from there until the
-map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is their sum.
-`repaints`: how often the map was drawn in `whole`. `work_ms` is what the server's parts need of one thread when nothing
-else runs in it: comparable between machines under load. Without a graphics card the processor draws: `drawn` is then an
-upper bound.
+Missions as they are suggested are flown, in a world of its own each, and their page watched; with --bearings, towards
+a goal that is not reached, until so many are painted. Times in ms of the wall: `server` from the arrival of the
+bearing's event in the browser to that of the belief or of its event, `frame` from there to that of the other, `page`
+from there until the map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is
+their sum. `repaints`: how often the map was drawn in `whole`. `work_ms` is what the server's parts need of one thread
+when nothing else runs in it: comparable between machines under load. Without a graphics card the processor draws:
+`drawn` is then an upper bound.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -125,19 +127,28 @@ def own_work() -> dict[str, dict[str, float | None]]:
     return {name: {"median": share(values, 0.5), "worst": share(values, 1.0)} for name, values in found.items()}
 
 
-def fly(bearings: int, speedup: float) -> list[dict[str, float]]:
-    with tempfile.TemporaryDirectory() as folder, serving(Path(folder), speedup) as server, watched_page(WATCH) as page:
+def fly(seed: int, speedup: float, bearings: int | None) -> list[dict[str, float]]:
+    """One mission, until it ends or that many bearings are painted."""
+    endless = {"expected_rmse_m": 0.1, "maximum_bearings": 200}
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        serving(Path(folder), speedup, seed=seed) as server,
+        watched_page(WATCH) as page,
+    ):
         page.goto(server.url)
         screen = Screen(page, server.url)
-        screen.fly(server.draft(expected_rmse_m=0.1, maximum_bearings=200))
+        spec = server.get("/api/defaults")["spec"]
+        spec["localization"] |= endless if bearings else {}
+        mission = server.make(spec)
+        screen.fly(mission)
         screen.map_ready()
-        until = time.monotonic() + 60 + 90 * bearings
-        while len(screen.evaluate("stages")) < bearings and time.monotonic() < until:
+        until = time.monotonic() + 60 + 90 * (bearings or 10)
+        while time.monotonic() < until:
             page.wait_for_timeout(1000)
-        stages = screen.evaluate("stages")
-        screen.part("abort").click()
-        page.wait_for_timeout(1000)
-    return stages
+            ended = any(event["kind"] == "mission_ended" for event in server.events(mission))
+            if ended or (bearings and len(screen.evaluate("stages")) >= bearings):
+                break
+        return cast(list[dict[str, float]], screen.evaluate("stages"))
 
 
 def figures(stages: dict[str, Any], repaints: dict[str, Any], work: dict[str, Any]) -> list[Figure]:
@@ -154,12 +165,14 @@ def figures(stages: dict[str, Any], repaints: dict[str, Any], work: dict[str, An
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--bearings", type=int, default=12)
-    parser.add_argument("--speedup", type=float, default=3.0)
+    parser.add_argument("--missions", type=int, default=4)
+    parser.add_argument("--bearings", type=int)
+    parser.add_argument("--speedup", type=float, default=1.5)
     add_out(parser)
     arguments = parser.parse_args()
     begun = begin(__file__)
-    seen = fly(arguments.bearings, arguments.speedup)
+    flown = (fly(3 + number, arguments.speedup, arguments.bearings) for number in range(arguments.missions))
+    seen = [stages for mission in flown for stages in mission]
     stages = {name: spread([one[end] - one[begin] for one in seen]) for name, begin, end in STAGES}
     repaints = spread([one["repaints"] for one in seen])
     if not seen:

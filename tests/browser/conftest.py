@@ -48,9 +48,9 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
 
 
 @contextmanager
-def serving(data_dir: Path, speedup: float = SPEEDUP, emitters: Sequence[str] = ()) -> Iterator[Server]:
+def serving(data_dir: Path, speedup: float = SPEEDUP, emitters: Sequence[str] = (), seed: int = 3) -> Iterator[Server]:
     """emitters: in the simulated world besides those of the presets, as `crossfix serve --emitter` takes them."""
-    arguments = ["--data-dir", str(data_dir), "--speedup", str(speedup), "--seed", "3"]
+    arguments = ["--data-dir", str(data_dir), "--speedup", str(speedup), "--seed", str(seed)]
     for one in emitters:
         arguments += ["--emitter", one]
     process = started([*arguments, "--port", "0"])

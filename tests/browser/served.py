@@ -55,6 +55,10 @@ class Server:
         for section, values in (QUICK | {"localization": localization}).items():
             spec[section] |= values
         spec["sensor"] |= sensor or {}
+        return self.make(spec)
+
+    def make(self, spec: Mapping[str, Any]) -> str:
+        """A drafted mission; its id."""
         answer = httpx.post(self.url.rstrip("/") + "/api/missions", json=spec, timeout=20)
         answer.raise_for_status()
         return answer.json()["mission_id"]
