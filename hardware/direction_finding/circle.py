@@ -1,11 +1,10 @@
 """A sweep's likelihood over direction: what it says of every bearing, where a main peak and a sigma say it of one.
 
-    p(m | b) = (1 - o - e) p_pattern(b) + o p_other(b) + e p_echoes(b)
+    p(m | b) = (1 - sum_k q_k) p_pattern(b) + sum_k q_k p_k(b)
 
-with p_pattern the density over all shapes that the pattern's antenna may show (refine.py), o the probability that the
-sweep was heard with another antenna (other_antenna.py), e that it was heard among many echoes (many_echoes.py), and
-p_other, p_echoes the densities with these. Several peaks, a skew and
-flat stretches are kept. What all bearings of a flight share (compass, mounting) is not in it: whoever uses it adds it.
+with p_pattern the density over all shapes that the pattern's antenna may show (refine.py), q_k the probability of
+another explanation (explained.py), and p_k the density with that. Several peaks, a skew and flat stretches are kept.
+What all bearings of a flight share (compass, mounting) is not in it: whoever uses it adds it.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Steps: bin (sweep.py) -> reject what no method can use -> sparse non-negative reconstruction on linear power (sparse.py)
 -> components -> posterior around the strongest, in decibels, echoes and look-down considered (refine.py)
--> another antenna than the pattern's, and many echoes, considered (other_antenna.py, many_echoes.py)
+-> another antenna than the pattern's, many echoes and slow fading considered (explained.py)
 -> likelihood all round (circle.py), quality.
 
 Units of the sparse problem: linear power above the noise floor. Both the columns of A and m are scaled to unit norm
@@ -13,6 +13,7 @@ component that correlates with (what is left of) the sweep by less than lambda /
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,15 +23,9 @@ from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.bent_lobes import BentLobes
 from hardware.direction_finding.beside_lobe import beside_lobe_sigma_deg
-from hardware.direction_finding.circle import Besides, SweepLikelihood, sweep_likelihood
-from hardware.direction_finding.many_echoes import SPREAD_REACH_DEG, ManyEchoes, echo_field, many_echoes
-from hardware.direction_finding.other_antenna import (
-    KNOWN_REACH_DEG,
-    OtherAntenna,
-    doubtful,
-    known_antenna,
-    other_antenna,
-)
+from hardware.direction_finding.circle import SweepLikelihood, sweep_likelihood
+from hardware.direction_finding.explained import Explained, bent_by_all, explained_by, of_all
+from hardware.direction_finding.likely_too import likely_too, new_beside
 from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
 from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
@@ -42,6 +37,7 @@ from hardware.reasons.sweep import (
     LikelyOtherAntenna,
     NoDirection,
     NothingAboveNoise,
+    OtherDirectionLikely,
     Overdriven,
     PatternBorrowed,
     PowerNotNumbers,
@@ -69,16 +65,6 @@ MAXIMUM_SIGMA_DEG = 60.0
 UNHEARD_BEAMS = 0.055
 """Of a whole circle unheard, in beam widths: what echoes from there bend the lobe by through the antenna's side lobes.
 Likeliest for sectors of 120 to 300 degrees in the field world (docs/direction-finding.md)."""
-OTHER_ODDS = 3.0
-"""Of another antenna to the pattern's before the sweep is seen, when nobody checked the pattern on the vehicle."""
-OTHER_ODDS_BORROWED = 8.0
-OTHER_ODDS_CHECKED = 0.05
-ECHO_ODDS = 2.0
-"""Of many echoes to the likeliest of one wave, one echo and a view from above, before the sweep is seen."""
-JOINED_DEG = 45.0
-"""Bearings of different explanations that are no further apart mean the same direction, and are averaged."""
-AMBIGUOUS = 0.25
-"""Probability beyond 60 degrees of a bearing that is no outlier's any more: sigma is the whole circle's spread then."""
 EMITTER_AWAY_M = 100.0
 """How far away an emitter is taken to be when a place that is not sure is made an angle: the planner's places lie 50 to
 150 m from where it looks."""
@@ -99,27 +85,7 @@ class _Prepared:
     bank: PatternBank
     curve: PatternCurve
     alternatives: Alternatives
-    echoes: BentLobes
-
-
-@dataclass(frozen=True, slots=True)
-class _Explained:
-    """What else may explain a sweep, and how probable each is; the pattern's antenna has the rest."""
-
-    other: OtherAntenna | None = None
-    of_other: float = 0.0
-    echoes: ManyEchoes | None = None
-    of_echoes: float = 0.0
-
-    def besides(self) -> tuple[Besides, ...]:
-        """Their densities."""
-        other, echoes = self.other, self.echoes
-        if other is None or echoes is None:
-            return ()
-        return (
-            Besides(self.of_other, other.bearing_deg + other.off_deg, other.log_density),
-            Besides(self.of_echoes, echoes.at_deg, echoes.log_density),
-        )
+    bent: tuple[BentLobes, ...]
 
 
 @dataclass(slots=True)
@@ -156,7 +122,7 @@ class SparseDirectionFinder:
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
         if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
             return refused(binned, NothingAboveNoise(HEARD_DB))
-        explained = _explained(prepared, pattern, binned, refined, noise_db)
+        explained = explained_by(alternatives, prepared.bent, pattern, binned, refined, noise_db)
         return self._reading(pattern, curve, binned, parts, refined, explained, noise_db, sweep.drift_m)
 
     def _prepare(self, pattern: AntennaPattern) -> _Prepared:
@@ -165,7 +131,7 @@ class SparseDirectionFinder:
             if len(self._prepared) >= 16:
                 self._prepared.clear()
             self._prepared[key] = _Prepared(
-                PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern), echo_field(pattern)
+                PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern), bent_by_all(pattern)
             )
         return self._prepared[key]
 
@@ -176,12 +142,12 @@ class SparseDirectionFinder:
         binned: BinnedSweep,
         parts: list[Component],
         refined: Refined,
-        explained: _Explained,
+        explained: Explained,
         noise_db: float | None,
         drift_m: float,
     ) -> BearingReading:
         place_sigma_deg = math.degrees(math.atan2(drift_m, EMITTER_AWAY_M))
-        bearing, own_sigma = _of_all(refined, explained)
+        bearing, own_sigma = of_all(refined, explained)
         likelihood = sweep_likelihood(refined.circle, explained.besides())
         unheard = unheard_sigma_deg(binned.largest_gap_deg, curve.beam_deg)
         beyond = (bearing - binned.gap_start_deg) % 360.0
@@ -194,11 +160,12 @@ class SparseDirectionFinder:
         own_sigma = math.hypot(own_sigma, unshown)
         sigma = math.hypot(own_sigma, self.heading_sigma_deg, pattern.mismatch_sigma_deg, place_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)
-        peaks = tuple(
+        sparse = tuple(
             BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))
             for p in parts[1:]
             if p.weight >= MINIMUM_PEAK_WEIGHT * parts[0].weight
         )
+        as_likely = likely_too(likelihood, bearing)
         reason: SweepReason | None = None
         if quality < self.minimum_quality:
             reason = UnlikeAntenna(quality, self.minimum_quality)
@@ -214,11 +181,11 @@ class SparseDirectionFinder:
             quality=quality,
             accepted=reason is None,
             reason=reason,
-            peaks=peaks,
+            peaks=(*as_likely, *(one for one in sparse if new_beside(one, as_likely))),
             binned_db=binned.power_db,
             fitted_db=refined.fitted_db,
             snr_db=None if noise_db is None else refined.peak_db - noise_db,
-            remarks=remarks_on(pattern, explained.of_other),
+            remarks=remarks_on(pattern, explained.of_other, as_likely),
             likelihood=_widened(likelihood, math.hypot(place_sigma_deg, unshown)).packed(),
         )
 
@@ -231,49 +198,14 @@ def unheard_sigma_deg(gap_deg: float, beam_deg: float) -> float:
     return UNHEARD_BEAMS * beam_deg * math.sqrt(gap_deg / 360.0) if gap_deg > beam_deg / 2.0 else 0.0
 
 
-def _explained(
-    prepared: _Prepared, pattern: AntennaPattern, binned: BinnedSweep, refined: Refined, noise_db: float | None
-) -> _Explained:
-    """Posterior of another antenna and of many echoes: Bayes' rule with the odds that the pattern's origin leaves."""
-    slices = doubtful(binned, refined.fitted_db)
-    if slices is None:
-        return _Explained()
-    level_db = refined.peak_db
-    known = known_antenna(prepared.alternatives, slices, refined.bearing_deg, level_db, noise_db)
-    other = other_antenna(slices, level_db, noise_db, known)
-    echoes = many_echoes(prepared.echoes, slices, level_db, noise_db, known, KNOWN_REACH_DEG)
-    unchecked = OTHER_ODDS_BORROWED if pattern.borrowed else OTHER_ODDS
-    odds = OTHER_ODDS_CHECKED if pattern.checked else unchecked
-    log = np.array([0.0, other.log_odds + math.log(odds), echoes.log_odds + math.log(ECHO_ODDS)])
-    probability = np.exp(log - log.max())
-    probability /= probability.sum()
-    return _Explained(other, float(probability[1]), echoes, float(probability[2]))
-
-
-def remarks_on(pattern: AntennaPattern, other: float) -> tuple[SweepRemark, ...]:
-    """other: probability of another antenna."""
-    borrowed = (PatternBorrowed(pattern.name),) if pattern.borrowed else ()
-    return (*borrowed, *((LikelyOtherAntenna(pattern.name, other),) if other > 0.5 else ()))
-
-
-def _of_all(refined: Refined, explained: _Explained) -> tuple[float, float]:
-    """(mean bearing of the explanations that agree with the likeliest, spread of all about it)."""
-    other, echoes = explained.other, explained.echoes
-    if other is None or echoes is None:
-        return refined.bearing_deg, refined.sigma_deg
-    share = np.array([1.0 - explained.of_other - explained.of_echoes, explained.of_other, explained.of_echoes])
-    bearings = np.array([refined.bearing_deg, other.bearing_deg, echoes.bearing_deg])
-    lead = float(bearings[int(np.argmax(share))])
-    apart = (bearings - lead + 180.0) % 360.0 - 180.0
-    joined = share * (np.abs(apart) <= JOINED_DEG)
-    bearing = (lead + float(joined @ apart) / float(joined.sum())) % 360.0
-    apart = (bearings[:2] - bearing + 180.0) % 360.0 - 180.0
-    beyond = np.abs(apart) > SPREAD_REACH_DEG
-    whole = float(share[:2] @ beyond) + float(share[2]) * echoes.beyond(bearing) > AMBIGUOUS
-    counted = np.where(beyond & (not whole), 0.0, apart)
-    squares = np.array([refined.sigma_deg, other.sigma_deg]) ** 2 + counted**2
-    spread = echoes.spread_deg(bearing, 180.0 if whole else SPREAD_REACH_DEG)
-    return bearing, math.sqrt(float(share[:2] @ squares) + float(share[2]) * spread**2)
+def remarks_on(pattern: AntennaPattern, other: float, as_likely: Sequence[BearingPeak]) -> tuple[SweepRemark, ...]:
+    """other: probability of another antenna. as_likely: directions that the sweep fits nearly as well."""
+    remarks: list[SweepRemark] = []
+    if pattern.borrowed:
+        remarks.append(PatternBorrowed(pattern.name))
+    if other > 0.5:
+        remarks.append(LikelyOtherAntenna(pattern.name, other))
+    return (*remarks, *(OtherDirectionLikely(one.bearing_deg) for one in as_likely))
 
 
 def _widened(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:

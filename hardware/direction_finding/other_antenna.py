@@ -48,7 +48,7 @@ REACH_DEG = 60.0
 STEP_DEG = 5.0
 KNOWN_REACH_DEG = 40.0
 AXIS_WITHIN_DEG = 10.0
-FITS_DB = 0.8
+FITS_DB = 0.4
 """A sweep that some shape of the pattern fits so well needs no other antenna."""
 _OFF_DEG = (BIN_DEG * np.arange(BINS) + 180.0) % 360.0 - 180.0
 _LOBES_DB = DEPTH_DB * (1.0 - np.exp(-12.0 * (_OFF_DEG / np.array(WIDTHS_DEG)[:, None]) ** 2 / DEPTH_DB))

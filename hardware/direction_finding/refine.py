@@ -51,7 +51,7 @@ _FADING_GRID = np.array([0.0, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
 _FADING_EVIDENCE = 2.0
 """Fading is believed when it lowers -2 log likelihood by more than this."""
 _FINE_DEG = 0.25
-COARSE_DEG = 5.0
+COARSE_DEG = 2.0
 LEAST_DENSITY = 1e-12
 _DB = 10.0 / np.log(10.0)
 _STEP_DEG = 0.5
@@ -95,7 +95,7 @@ class Refined:
 class CircleDensity:
     """Log density of the bearing over all shapes, unnormalized: every 5 degrees all round, and finely near the bearing.
 
-    coarse_deg, coarse_log: (72,). fine_deg, fine_log: (j,) ascending, 0.25 degrees apart, about the bearing.
+    coarse_deg, coarse_log: (180,). fine_deg, fine_log: (j,) ascending, 0.25 degrees apart, about the bearing.
     """
 
     coarse_deg: NDArray[np.float64]

@@ -175,6 +175,17 @@ class PatternBorrowed:
 
 
 @dataclass(frozen=True, slots=True)
+class OtherDirectionLikely:
+    other_bearing_deg: float
+    code: Literal["other_direction_likely"] = "other_direction_likely"
+
+    english: ClassVar[Words] = Words(
+        "The sweep fits {other_bearing_deg} nearly as well as its bearing.",
+        "Listen from another place: only one of the two directions fits there, too.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class LikelyOtherAntenna:
     """probability: that the sweep was heard with another antenna than the pattern's."""
 
@@ -220,7 +231,7 @@ class RhythmNotHeard:
     )
 
 
-SweepRemark = PatternBorrowed | LikelyOtherAntenna | PulsesNotGiven
+SweepRemark = PatternBorrowed | LikelyOtherAntenna | OtherDirectionLikely | PulsesNotGiven
 """What makes the bearing of a sweep less certain, without refusing it."""
 
 SweepReason = (

@@ -449,6 +449,10 @@ export const reasonsEn: ReasonTable = {
     text: "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
     remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
   },
+  other_direction_likely: {
+    text: "The sweep fits {other_bearing_deg} nearly as well as its bearing.",
+    remedy: "Listen from another place: only one of the two directions fits there, too.",
+  },
   pulses_not_given: {
     text: "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, {unclear} that could be more than one's and {strangers} that fit none count for no tag.",
     remedy: "",

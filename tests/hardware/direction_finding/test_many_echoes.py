@@ -7,9 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from hardware.direction_finding.bent import Bent, bent
 from hardware.direction_finding.comparison import beam, known_right
 from hardware.direction_finding.estimate import SparseDirectionFinder
-from hardware.direction_finding.many_echoes import ManyEchoes, echo_field, many_echoes
+from hardware.direction_finding.many_echoes import echo_field
 from hardware.direction_finding.slices import Slices, slices_of
 from hardware.direction_finding.sweep import bin_sweep
 from hardware.readings import Sweep
@@ -25,8 +26,8 @@ def off_deg(bearing_deg: float, truth_deg: float) -> float:
     return (bearing_deg - truth_deg + 180.0) % 360.0 - 180.0
 
 
-def weighed(slices: Slices) -> ManyEchoes:
-    return many_echoes(FIELD, slices, 0.0, None, 0.0, 40.0)
+def weighed(slices: Slices) -> Bent:
+    return bent(FIELD, slices, 0.0, None, 0.0, 40.0)
 
 
 def heard(row: Mismatch, slices: int, truth_deg: float, seed: int) -> tuple[Sweep, Slices]:

@@ -92,6 +92,10 @@ export const sweep = {
     text: "Die Drehung sieht nach einer anderen Antenne als {name} aus: Nur die Hauptkeule wurde verwendet.",
     remedy: "Prüfen, welche Antenne montiert ist, und ihr Diagramm messen: crossfix calibrate.",
   },
+  other_direction_likely: {
+    text: "Die Drehung passt fast ebenso gut zu {other_bearing_deg} wie zur Peilung.",
+    remedy: "Von einem anderen Ort hören: Dort passt nur eine der beiden Richtungen.",
+  },
   not_the_measured_antenna: {
     text: "Das ist nicht die Antenne, die gemessen wurde: {sweeps} Drehungen weichen auf die gleiche Weise um {repeats_db:1} vom Diagramm {name} ab.",
     remedy: "Prüfen, welche Antenne montiert ist und wie, oder das vorgeschlagene Diagramm übernehmen.",
