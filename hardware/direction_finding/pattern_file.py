@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.table_file import LONGEST_CELL, Row, cells_of, commas_in_numbers, number_of
 from hardware.reasons.pattern import (
     AngleTwice,
     ImplausibleGains,
@@ -32,7 +33,7 @@ from hardware.reasons.pattern import (
     PatternUnitUnknown,
     TooFewPoints,
 )
-from hardware.reasons.table import FileUnreadable
+from hardware.reasons.table import FileUnreadable, TooManyCells
 from planner.reason import ReasonedError
 
 FORMAT = "crossfix antenna pattern"
@@ -189,7 +190,8 @@ def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
 
 
 def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float = 0.0) -> AntennaPattern:
-    """A turntable's table: rows `angle_deg, gain`, comma, semicolon or blank separated, `#` comments, optional header.
+    """A turntable's table: rows `angle_deg, gain`, comma, semicolon or blank separated, `#` comments, optional header;
+    decimal commas where no comma separates.
 
     Several rows at one angle (more than one turn) are averaged. Raises PatternError naming file and line.
     """
@@ -197,22 +199,47 @@ def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float
 
 
 def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -> AntennaPattern:
-    rows: list[tuple[float, float]] = []
+    rows: list[Row] = []
+    header: Row | None = None
     for number, line in enumerate(text.splitlines(), start=1):
-        row = line.split("#")[0].strip()
-        if not row:
-            continue
-        cells = next(csv.reader([row.replace(";", ",").replace("\t", ",")]))
-        cells = cells if len(cells) > 1 else row.split()
+        bare = line.split("#")[0].strip()
         try:
-            rows.append((float(cells[0]) % 360.0, float(cells[1])))
-        except (ValueError, IndexError):
-            if rows:
-                raise PatternError(PatternRowUnusable(filename, number, line.strip())) from None
+            cells, named = _turntable_cells(bare), cells_of(bare or " ")
+        except csv.Error:  # a cell of more than 128 kB, for one
+            raise PatternError(PatternRowUnusable(filename, number, line.strip()[:LONGEST_CELL])) from None
+        if not any(cells):
+            continue
+        if len(cells) > 1 and number_of(cells[0]) is not None and number_of(cells[1]) is not None:
+            rows.append(Row(number, cells))
+        elif rows or number_of(cells[0]) is not None:
+            raise PatternError(PatternRowUnusable(filename, number, line.strip()))
+        else:
+            header = Row(number, named) if len(named) > 1 else None  # rather than a title
     if not rows:
         raise PatternError(NotAPattern(filename, "rows"))
-    table = np.array(rows)
+    _refuse_commas(filename, header, rows)
+    table = np.array([(number_of(row.cells[0]), number_of(row.cells[1])) for row in rows], dtype=np.float64)
     gain = _to_db(filename, table[:, 1], unit)
-    angle, member = np.unique(np.round(table[:, 0], 6), return_inverse=True)
+    angle, member = np.unique(np.round(table[:, 0] % 360.0, 6), return_inverse=True)
     mean = np.bincount(member, gain) / np.bincount(member)
     return make_pattern(Path(filename).stem, np.asarray(angle, dtype=np.float64), mean, offset_to_nose_deg)
+
+
+def _turntable_cells(line: str) -> tuple[str, ...]:
+    """Blanks separate numbers where nothing else does."""
+    between_blanks = tuple(line.split())
+    if len(between_blanks) > 1 and all(number_of(cell) is not None for cell in between_blanks):
+        return between_blanks
+    cells = cells_of(line or " ")
+    return cells if len(cells) > 1 else between_blanks
+
+
+def _refuse_commas(filename: str, header: Row | None, rows: list[Row]) -> None:
+    """Raises PatternError where commas separate columns and stand in numbers as well."""
+    if header is not None:
+        wide = next((row for row in rows if row.numbers_beyond(len(header.cells))), None)
+    else:
+        wide = rows[0] if commas_in_numbers(rows) else None
+    if wide is not None:
+        columns = 2 if header is None else len(header.cells)
+        raise PatternError(TooManyCells(filename, wide.line, len(wide.cells), columns))

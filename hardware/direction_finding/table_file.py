@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,8 @@ from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
+_BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
+_WHOLE = re.compile(r"[+-]?\d+")
 
 LARGEST = 1e100
 """Of any number: its square is finite, too."""
@@ -43,14 +45,12 @@ class Row:
 
     def number(self, column: int) -> float | None:
         """The cell as a float, None when it is missing, empty, no number or one that cannot be reckoned with."""
-        if column >= len(self.cells):
-            return None
-        cell = self.cells[column]
-        try:
-            number = float(cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
-        except ValueError:
-            return None
-        return None if abs(number) > LARGEST else number
+        number = number_of(self.cells[column]) if column < len(self.cells) else None
+        return None if number is None or abs(number) > LARGEST else number
+
+    def numbers_beyond(self, width: int) -> bool:
+        """Whether a cell after the first `width` holds a number: notes there do no harm."""
+        return any(number_of(cell) is not None for cell in self.cells[width:])
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +90,9 @@ def read_table(path: Path | str) -> Table:
         stripped = line.strip()
         try:
             if stripped.startswith("#"):
-                comments.append(Row(number, _cells(stripped.lstrip("#"))))
+                comments.append(Row(number, cells_of(stripped.lstrip("#"))))
             elif stripped.strip(",;"):
-                rows.append(Row(number, _cells(stripped)))
+                rows.append(Row(number, cells_of(stripped)))
         except csv.Error as error:  # a cell of more than 128 kB, for one
             raise RecordingError(FileUnusable(str(path), "not_text")) from error
     if not rows:
@@ -100,13 +100,30 @@ def read_table(path: Path | str) -> Table:
     return Table(path, tuple(rows), tuple(comments))
 
 
-def _cells(line: str) -> tuple[str, ...]:
+def number_of(cell: str) -> float | None:
+    """The cell as a float, with a decimal point or a decimal comma; None when it is no number."""
+    try:
+        return float(cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
+    except ValueError:
+        return None
+
+
+def cells_of(line: str) -> tuple[str, ...]:
     """Split at semicolons or tabs when every comma between them is a decimal one, at commas else."""
     for delimiter in (";", "\t"):
         cells = _split(line, delimiter)
         if len(cells) > 1 and all("," not in cell or _DECIMAL_COMMA.fullmatch(cell) for cell in cells):
             return cells
     return _split(line, ",")
+
+
+def commas_in_numbers(rows: Sequence[Row]) -> bool:
+    """Whether rows without a header look as if numbers with decimal commas had been split at them: whole numbers only,
+    more than two in some rows, and unsigned where decimals would stand."""
+    wide = [row.cells for row in rows if len(row.cells) > 2]
+    whole = all(_WHOLE.fullmatch(cell) for row in rows for cell in row.cells)
+    pairs = all(cell.isdigit() for cells in wide if len(cells) % 2 == 0 for cell in cells[1::2])
+    return bool(wide) and whole and pairs and all(cells[-1].isdigit() and len(cells[-1]) < 3 for cells in wide)
 
 
 def _split(line: str, delimiter: str) -> tuple[str, ...]:
@@ -119,7 +136,13 @@ def some_of(names: Iterable[str]) -> tuple[str, ...]:
     return (*(name[:LONGEST_CELL] for name in shown[:MOST_NAMED]), *(("...",) if len(shown) > MOST_NAMED else ()))
 
 
+def plain_name(name: str) -> str:
+    """A header cell in lower case, its words and its unit joined by underscores: "Heading [°]" is heading_deg."""
+    words = _BETWEEN_WORDS.sub("_", name.lower().replace("°", "_deg")).strip("_")
+    return re.sub(r"_degrees?$", "_deg", words)
+
+
 def column_of(names: tuple[str, ...], *aliases: str) -> int | None:
-    """Index of the first header cell that is one of the aliases (lower case, blanks as underscores)."""
-    normal = [name.lower().replace(" ", "_").replace("-", "_") for name in names]
+    """Index of the header cell that is the first of the aliases that any is (see plain_name)."""
+    normal = [plain_name(name) for name in names]
     return next((normal.index(alias) for alias in aliases if alias in normal), None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from hardware.reasons.table import FileUnreadable
+from hardware.reasons.table import FileUnreadable, TooManyCells
 from planner.reason import Words
 
 A_PATTERN = "Use a file that crossfix calibrate wrote, or a turntable table of angle_deg, gain_db that ends in .csv."
@@ -130,4 +130,5 @@ PatternReason = (
     | ImplausibleGains
     | PatternOfOtherFrequency
     | FileUnreadable
+    | TooManyCells
 )

@@ -65,6 +65,23 @@ class ColumnsUnknown:
 
 
 @dataclass(frozen=True, slots=True)
+class TooManyCells:
+    """columns: those that the header names, or the two that a table without a header has. line: the first such row."""
+
+    file: str
+    line: int
+    cells: int
+    columns: int
+    code: Literal["too_many_cells"] = "too_many_cells"
+
+    english: ClassVar[Words] = Words(
+        "The rows of {file} do not fit its columns: {cells|cell|cells} for {columns|column|columns} in line {line}.",
+        "If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else name "
+        "every column in a header line.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class CellUnusable:
     """A row that was left out. line, column: from 1. cell: as it stands there, empty when it does not."""
 
@@ -208,6 +225,7 @@ TableReason = (
     FileUnreadable
     | FileUnusable
     | ColumnsUnknown
+    | TooManyCells
     | TableRemark
     | NothingUsable
     | OneTagOnly

@@ -538,6 +538,11 @@ export const reasonsEn: ReasonTable = {
     text: "The file {file} cannot be read ({detail}).",
     remedy: "Check its path and its format.",
   },
+  too_many_cells: {
+    text: "The rows of {file} do not fit its columns: {cells|cell|cells} for {columns|column|columns} in line {line}.",
+    remedy:
+      "If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else name every column in a header line.",
+  },
   file_unusable: {
     text: "The file {file} {why?not_text=is not a text file|empty=holds no rows of data|no_pulse=holds no pulse (no row that starts with 7)|one_heading=holds fewer than two rows of time and heading}.",
     remedy: "{why?not_text=Export the recording as CSV|*=Check that it is the right file}.",

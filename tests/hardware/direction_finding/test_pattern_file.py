@@ -15,7 +15,7 @@ from hardware.reasons.pattern import (
     PatternRowUnusable,
     TooFewPoints,
 )
-from hardware.reasons.table import FileUnreadable
+from hardware.reasons.table import FileUnreadable, TooManyCells
 
 TURNTABLE = "angle_deg, gain_db\n" + "\n".join(f"{a}, {-a / 20}" for a in range(0, 360, 30))
 
@@ -67,9 +67,45 @@ def test_a_pattern_holds_around_its_frequency_only():
     assert parse_pattern("mine.csv", TURNTABLE).other_frequency(150e6) is None
 
 
+@pytest.mark.parametrize("separator", [";", "\t", " ", '","'])
+@pytest.mark.parametrize("heading", ["", "Winkel;Gewinn\n", "angle gain\n"])
+def test_decimal_commas_are_read_where_no_comma_separates(separator, heading):
+    gains = [-4.4 - 0.3 * k for k in range(12)]
+    quote = '"' if "," in separator else ""
+    german = [f"{30 * k},0{separator}{gain:.1f}".replace(".", ",") for k, gain in enumerate(gains)]
+    pattern = parse_pattern("mine.csv", heading + "\n".join(f"{quote}{row}{quote}" for row in german))
+    np.testing.assert_allclose(pattern.relative_bearing_deg, np.arange(0.0, 360.0, 30.0))
+    np.testing.assert_allclose(pattern.gain_db, gains)
+
+
+@pytest.mark.parametrize(
+    ("rows", "line", "cells"),
+    [
+        ("angle_deg,gain_db\n0,0,-4,4\n30,0,-5,1\n", 2, 4),
+        ("angle_deg,gain_db\n0,-4.4\n30,-5,1\n", 3, 3),
+        ("0,0,-4,4\n30,0,-5,1\n60,-5,1\n", 1, 4),
+        ("0,-4,4\n30,-5,1\n", 1, 3),
+    ],
+)
+def test_decimal_commas_between_commas_are_not_cut_off(rows, line, cells):
+    with refusing(TooManyCells("mine.csv", line, cells, 2), PatternError):
+        parse_pattern("mine.csv", rows)
+
+
+def test_columns_beside_angle_and_gain_are_not_read():
+    more = (
+        TURNTABLE.replace("gain_db", "gain_db, phase_deg").replace("\n", ", 12\n").replace("phase_deg, 12", "phase_deg")
+    )
+    assert parse_pattern("mine.csv", more).gain_db[3] == -4.5
+    assert parse_pattern("mine.csv", TURNTABLE.replace("-1.5", "-1.5, twice")).gain_db[3] == -4.5
+    blanks = TURNTABLE.replace(",", "").replace("-1.5", "-1.5 twice")
+    assert parse_pattern("mine.csv", blanks).gain_db[1] == -1.5
+
+
 @pytest.mark.parametrize(
     ("rows", "reason"),
     [
+        ("0, x\n10, 2\n", PatternRowUnusable("mine.csv", 1, "0, x")),
         ("angle_deg, gain_db\n", NotAPattern("mine.csv", "rows")),
         ("0, 1\n10, 2\n", TooFewPoints("mine", 2, 8)),
         ("0, 1\n10, x\n", PatternRowUnusable("mine.csv", 2, "10, x")),

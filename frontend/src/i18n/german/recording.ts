@@ -19,6 +19,11 @@ export const recording = {
     text: "Die {columns|Spalte|Spalten} von {file} (Zeile {line}) {columns?1=ist|*=sind} nicht zu unterscheiden.",
     remedy: "Sie in einer Kopfzeile nennen: {expected}.",
   },
+  too_many_cells: {
+    text: "Die Zeilen von {file} passen nicht zu ihren Spalten: {cells|Zelle|Zellen} für {columns|Spalte|Spalten} in Zeile {line}.",
+    remedy:
+      "Haben Zahlen ein Dezimalkomma, die Spalten mit Semikolons trennen oder die Zahlen in Anführungszeichen setzen; sonst jede Spalte in einer Kopfzeile nennen.",
+  },
   cell_unusable: {
     text: "Zeile {line} von {file} ist ausgelassen: „{cell}“ in Spalte {column} ist {quantity?latitude=keine brauchbare Breite|longitude=keine brauchbare Länge|bearing=keine brauchbare Peilung|sigma=kein brauchbarer Peilfehler|time=keine brauchbare Zeit|heading=kein brauchbarer Kurs|power=keine brauchbare Leistung|frequency=keine brauchbare Frequenz|snr=kein brauchbares SNR|attitude=keine brauchbare Lage|noise_psd=keine brauchbare Rauschdichte|kind_of_row=keine Zeilenart (7, 10 oder 11)}.",
     remedy: "",
