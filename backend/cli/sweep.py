@@ -25,7 +25,10 @@ from planner.reason import sentence_of
 
 def sweep(
     file: Annotated[
-        Path, typer.Argument(help="UAV-RT rotation file, CSV with columns heading_deg, power_db, or SigMF.")
+        Path,
+        typer.Argument(
+            help="UAV-RT rotation file, CSV with columns heading_deg, power_db[, time, lat, lon, tag, sweep], or SigMF."
+        ),
     ],
     pattern: Annotated[
         Path | None,

@@ -209,9 +209,10 @@ def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -
             raise PatternError(PatternRowUnusable(filename, number, line.strip()[:LONGEST_CELL])) from None
         if not any(cells):
             continue
-        if len(cells) > 1 and number_of(cells[0]) is not None and number_of(cells[1]) is not None:
+        numbers = [number_of(cell) is not None for cell in cells[:2]]
+        if numbers == [True, True]:
             rows.append(Row(number, cells))
-        elif rows or number_of(cells[0]) is not None:
+        elif rows or numbers[0]:
             raise PatternError(PatternRowUnusable(filename, number, line.strip()))
         else:
             header = Row(number, named) if len(named) > 1 else None  # rather than a title

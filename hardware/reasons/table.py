@@ -82,6 +82,40 @@ class TooManyCells:
 
 
 @dataclass(frozen=True, slots=True)
+class HeadingsInRadians:
+    """column: from 1. least, most: of its values."""
+
+    file: str
+    column: int
+    least: float
+    most: float
+    code: Literal["headings_in_radians"] = "headings_in_radians"
+
+    english: ClassVar[Words] = Words(
+        "The headings in column {column} of {file} ({least:2} to {most:2}) seem to be radians.",
+        "Write them in degrees clockwise from north.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PowerLinear:
+    """column: from 1. least, most: of its values. by: how one can tell."""
+
+    file: str
+    column: int
+    by: Literal["name", "values"]
+    least: float
+    most: float
+    code: Literal["power_linear"] = "power_linear"
+
+    english: ClassVar[Words] = Words(
+        "The power in column {column} of {file} ({least} to {most}) {by?name=is named as linear|values=seems to be "
+        "linear}, not in decibels.",
+        "Write ten times its decimal logarithm{by?name=|values=; if it is decibels, name the column power_db}.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class CellUnusable:
     """A row that was left out. line, column: from 1. cell: as it stands there, empty when it does not."""
 
@@ -103,14 +137,16 @@ class CellUnusable:
 class RowLeftOut:
     file: str
     line: int
-    why: Literal["columns", "not_open", "two_offsets"]
+    why: Literal["columns", "not_open", "two_offsets", "wide"]
     code: Literal["row_left_out"] = "row_left_out"
 
     english: ClassVar[Words] = Words(
         "Line {line} of {file} is left out: {why?columns=it has too few columns|"
         "not_open=it ends a rotation that was never begun|"
-        "two_offsets=columns 20 and 21 both carry an antenna offset}.",
-        "{why?two_offsets=Add a header line that names the right one.|*=}",
+        "two_offsets=columns 20 and 21 both carry an antenna offset|wide=it has more numbers than there are columns}.",
+        "{why?two_offsets=Add a header line that names the right one.|"
+        "wide=If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else "
+        "name every column in a header line.|*=}",
     )
 
 
@@ -168,7 +204,48 @@ class OtherTagsLeftOut:
     )
 
 
-TableRemark = CellUnusable | RowLeftOut | RotationIrregular | PulsesOutsideRotations | TagNotHeard | OtherTagsLeftOut
+@dataclass(frozen=True, slots=True)
+class DecibelsAssumed:
+    """column: from 1. least, most: of its values."""
+
+    file: str
+    column: int
+    least: float
+    most: float
+    code: Literal["decibels_assumed"] = "decibels_assumed"
+
+    english: ClassVar[Words] = Words(
+        "The power in column {column} of {file} ({least:2} to {most:2}) has no unit and no negative value; it is taken "
+        "for decibels.",
+        "Name the column power_db if that is right; if it is linear, write ten times its decimal logarithm instead.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PlacesApart:
+    """line: of the sweep's first row. apart_m: of its row that is farthest from the place that it counts from."""
+
+    file: str
+    line: int
+    apart_m: float
+    code: Literal["places_apart"] = "places_apart"
+
+    english: ClassVar[Words] = Words(
+        "The sweep from line {line} of {file} counts from one place, but rows of it were taken up to {apart_m} away.",
+        "If it is several turns, number them in a column named sweep.",
+    )
+
+
+TableRemark = (
+    CellUnusable
+    | RowLeftOut
+    | RotationIrregular
+    | PulsesOutsideRotations
+    | TagNotHeard
+    | OtherTagsLeftOut
+    | DecibelsAssumed
+    | PlacesApart
+)
 """What is left out of a file, or assumed in it."""
 
 
@@ -226,6 +303,8 @@ TableReason = (
     | FileUnusable
     | ColumnsUnknown
     | TooManyCells
+    | HeadingsInRadians
+    | PowerLinear
     | TableRemark
     | NothingUsable
     | OneTagOnly

@@ -551,13 +551,22 @@ export const reasonsEn: ReasonTable = {
     text: "The {columns|column|columns} of {file} (line {line}) cannot be told apart.",
     remedy: "Name them in a header line: {expected}.",
   },
+  headings_in_radians: {
+    text: "The headings in column {column} of {file} ({least:2} to {most:2}) seem to be radians.",
+    remedy: "Write them in degrees clockwise from north.",
+  },
+  power_linear: {
+    text: "The power in column {column} of {file} ({least} to {most}) {by?name=is named as linear|values=seems to be linear}, not in decibels.",
+    remedy: "Write ten times its decimal logarithm{by?name=|values=; if it is decibels, name the column power_db}.",
+  },
   cell_unusable: {
     text: 'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}.',
     remedy: "",
   },
   row_left_out: {
-    text: "Line {line} of {file} is left out: {why?columns=it has too few columns|not_open=it ends a rotation that was never begun|two_offsets=columns 20 and 21 both carry an antenna offset}.",
-    remedy: "{why?two_offsets=Add a header line that names the right one.|*=}",
+    text: "Line {line} of {file} is left out: {why?columns=it has too few columns|not_open=it ends a rotation that was never begun|two_offsets=columns 20 and 21 both carry an antenna offset|wide=it has more numbers than there are columns}.",
+    remedy:
+      "{why?two_offsets=Add a header line that names the right one.|wide=If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else name every column in a header line.|*=}",
   },
   rotation_irregular: {
     text: "The rotation from line {line} of {file} {why?empty=holds no usable pulse and is left out|not_closed=is never closed (no row 11); it ends where the next one begins, or with the file|offset_changes=changes its antenna offset; the commonest is used}.",
@@ -574,6 +583,14 @@ export const reasonsEn: ReasonTable = {
   other_tags_left_out: {
     text: "Of the rotation from line {line} of {file}, tag {tag} is used, without {pulses|pulse|pulses} of other tags ({others}).",
     remedy: "To use another tag, name it.",
+  },
+  decibels_assumed: {
+    text: "The power in column {column} of {file} ({least:2} to {most:2}) has no unit and no negative value; it is taken for decibels.",
+    remedy: "Name the column power_db if that is right; if it is linear, write ten times its decimal logarithm instead.",
+  },
+  places_apart: {
+    text: "The sweep from line {line} of {file} counts from one place, but rows of it were taken up to {apart_m} away.",
+    remedy: "If it is several turns, number them in a column named sweep.",
   },
   nothing_usable: {
     text: "The file {file} holds no usable {wanted?bearing=bearing|power=row of heading and power|pulse=pulse}. {because}",

@@ -86,6 +86,25 @@ def test_plain_csv_takes_its_place_from_the_option(tmp_path: Path) -> None:
     assert known["bearing_deg"] == pytest.approx(33.0, abs=0.3)
 
 
+def test_a_plain_table_of_several_turns_and_tags_prints_an_array_of_the_tag_that_is_named(tmp_path: Path) -> None:
+    pattern = load_pattern(SMALL_YAGI)
+    heading = np.arange(0.0, 360.0, 5.0)
+    rows = [
+        f"{turn},{tag},{h},{power}"
+        for turn, tag, bearing in ((1, "A", 33.0), (1, "B", 80.0), (2, "A", 200.0), (2, "B", 290.0))
+        for h, power in zip(heading, pattern.gain_at(bearing - heading) - 60.0, strict=True)
+    ]
+    path = tmp_path / "plain.csv"
+    path.write_text("\n".join(["sweep,tag,Heading (deg),Power (dBm)", *rows]))
+    answers = json.loads(CliRunner().invoke(APP, [str(path), "--tag", "B", "--json"]).stdout)
+    assert [(answer["tag"], answer["samples"]) for answer in answers] == [("B", 72), ("B", 72)]
+    assert [answer["bearing_deg"] for answer in answers] == pytest.approx([80.0, 290.0], abs=0.3)
+    refused = CliRunner().invoke(APP, [str(path), "--tag", "C", "--json"])
+    assert refused.exit_code == 2
+    assert "Tag C was not heard" in refused.stderr
+    assert "A, B" in refused.stderr
+
+
 @pytest.mark.parametrize("first_deg", [0.0, 100.0, 215.0])
 def test_a_turn_of_270_degrees_gives_the_bearing_wherever_the_gap_lies(tmp_path: Path, first_deg: float) -> None:
     """Within two of its sigmas, and into the gap no sharper than outside it."""

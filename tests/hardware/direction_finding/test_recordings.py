@@ -107,7 +107,7 @@ def test_header_names_decide_which_column_is_the_offset(tmp_path: Path) -> None:
 
 
 def test_a_table_of_headings_through_7_10_and_11_degrees_is_no_rotation_file(tmp_path: Path) -> None:
-    rows = [f"{heading},{-60 - heading},{heading / 30},50.6,7.2" for heading in range(0, 360, 1)]
+    rows = [f"{heading},{-60 - heading / 10},{heading / 30},50.6,7.2" for heading in range(0, 360, 1)]
     (recorded,) = read_recording(write(tmp_path, ["heading_deg,power_db,time_s,lat,lon", *rows])).sweeps
     assert len(recorded.sweep.heading_deg) == 360
 

@@ -29,8 +29,9 @@ export const recording = {
     remedy: "",
   },
   row_left_out: {
-    text: "Zeile {line} von {file} ist ausgelassen: {why?columns=Sie hat zu wenige Spalten|not_open=Sie beendet eine Drehung, die nie begann|two_offsets=Die Spalten 20 und 21 nennen beide einen Antennenversatz}.",
-    remedy: "{why?two_offsets=Eine Kopfzeile ergänzen, die den richtigen nennt.|*=}",
+    text: "Zeile {line} von {file} ist ausgelassen: {why?columns=Sie hat zu wenige Spalten|not_open=Sie beendet eine Drehung, die nie begann|two_offsets=Die Spalten 20 und 21 nennen beide einen Antennenversatz|wide=Sie hat mehr Zahlen, als es Spalten gibt}.",
+    remedy:
+      "{why?two_offsets=Eine Kopfzeile ergänzen, die den richtigen nennt.|wide=Haben Zahlen ein Dezimalkomma, die Spalten mit Semikolons trennen oder die Zahlen in Anführungszeichen setzen; sonst jede Spalte in einer Kopfzeile nennen.|*=}",
   },
   rotation_irregular: {
     text: "Die Drehung ab Zeile {line} von {file} {why?empty=enthält keinen brauchbaren Puls und ist ausgelassen|not_closed=wird nie beendet (keine Zeile 11); sie endet, wo die nächste beginnt, oder mit der Datei|offset_changes=wechselt ihren Antennenversatz; der häufigste wird verwendet}.",
@@ -46,6 +47,22 @@ export const recording = {
   other_tags_left_out: {
     text: "Aus der Drehung ab Zeile {line} von {file} wird die Kennung {tag} verwendet, ohne {pulses|Puls|Pulse} anderer Kennungen ({others}).",
     remedy: "Um eine andere Kennung zu verwenden, sie nennen.",
+  },
+  decibels_assumed: {
+    text: "Die Leistung in Spalte {column} von {file} ({least:2} bis {most:2}) hat keine Einheit und keinen negativen Wert; sie wird als Dezibel genommen.",
+    remedy: "Stimmt das, die Spalte power_db nennen; ist sie linear, stattdessen das Zehnfache ihres dekadischen Logarithmus schreiben.",
+  },
+  places_apart: {
+    text: "Die Drehung ab Zeile {line} von {file} zählt von einem Ort aus, doch Zeilen darin entstanden bis zu {apart_m} davon entfernt.",
+    remedy: "Sind es mehrere Drehungen, sie in einer Spalte namens sweep nummerieren.",
+  },
+  headings_in_radians: {
+    text: "Die Kurse in Spalte {column} von {file} ({least:2} bis {most:2}) scheinen Radiant zu sein.",
+    remedy: "Sie in Grad im Uhrzeigersinn von Nord schreiben.",
+  },
+  power_linear: {
+    text: "Die Leistung in Spalte {column} von {file} ({least} bis {most}) ist {by?name=dem Namen|values=den Werten} nach linear, nicht in Dezibel.",
+    remedy: "Das Zehnfache ihres dekadischen Logarithmus schreiben{by?name=|values=; sind es Dezibel, die Spalte power_db nennen}.",
   },
   nothing_usable: {
     text: "Die Datei {file} enthält {wanted?bearing=keine brauchbare Peilung|power=keine brauchbare Zeile mit Kurs und Leistung|pulse=keinen brauchbaren Puls}. {because}",

@@ -1,0 +1,114 @@
+"""Which column of a plain table holds what: by its name in a header, or, without one, by its place and its values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from hardware.direction_finding.table_file import (
+    RecordingError,
+    Row,
+    Table,
+    column_of,
+    commas_in_numbers,
+    number_of,
+    plain_name,
+)
+from hardware.reasons.table import FileUnusable, TooManyCells
+
+Unit = Literal["decibels", "linear", "unnamed"]
+
+_HEADINGS = ("heading", "yaw", "azimuth", "angle", "bearing", "direction", "kurs", "richtung", "azimut", "winkel")
+_POWERS = ("power", "rssi", "level", "signal_strength", "snr", "leistung", "pegel")
+_DECIBELS = ("_db", "_dbm", "_dbw", "_dbfs")
+_LINEAR = ("_mw", "_w", "_uw", "_µw", "_nw", "_pw", "_lin", "_linear")
+
+HEADING = tuple(f"{name}{unit}" for name in _HEADINGS for unit in ("_deg", ""))
+RADIANS = tuple(f"{name}_rad" for name in _HEADINGS)
+POWER = tuple(f"{name}{unit}" for name in _POWERS for unit in (*_DECIBELS, ""))
+LINEAR = (*(f"{name}{unit}" for name in _POWERS for unit in _LINEAR), "mw")
+TURNS = ("sweep", "sweep_id", "rotation", "rotation_id", "turn", "turn_id", "place", "place_id", "drehung", "ort")
+"""Columns of which a new value begins another sweep."""
+EXPECTED = ("heading_deg", "power_db")
+
+HALF_TURN_DEG = 180.0
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Indices from 0, None: there is none. width: how many columns there are, None: as many as a row likes. radians:
+    the heading's name says so. unit: what the power's name says."""
+
+    heading: int
+    power: int
+    width: int | None
+    radians: bool = False
+    unit: Unit = "unnamed"
+    time: int | None = None
+    lat: int | None = None
+    lon: int | None = None
+    frequency: int | None = None
+    tag: int | None = None
+    turns: tuple[int, ...] = ()
+
+
+def columns_of(table: Table) -> tuple[Columns, tuple[Row, ...]]:
+    """The columns and the rows below their header. Raises RecordingError when they cannot be told apart."""
+    header, rows = _header(table)
+    columns = _unnamed(table, rows) if header is None else _named(table, header)
+    if not rows:
+        raise RecordingError(FileUnusable(str(table.path), "empty"))
+    return columns, rows
+
+
+def _header(table: Table) -> tuple[Row | None, tuple[Row, ...]]:
+    """The header row (a first line, or a comment, whose cells name a heading column) and the data rows."""
+    first = table.rows[0]
+    if first.number(0) is None and any(cell and number_of(cell) is None for cell in first.cells):
+        return first, table.rows[1:]
+    named = next((c for c in table.comments if column_of(c.cells, *HEADING, *RADIANS) is not None), None)
+    return named, table.rows
+
+
+def _named(table: Table, header: Row) -> Columns:
+    names = header.cells
+    heading = column_of(names, *HEADING, *RADIANS)
+    power = column_of(names, *POWER, *LINEAR)
+    if heading is None or power is None:
+        raise table.columns_unknown(header, *EXPECTED)
+    turns = [column_of(names, name) for name in TURNS]
+    return Columns(
+        heading=heading,
+        power=power,
+        width=max(k for k, name in enumerate(names) if name) + 1,
+        radians=plain_name(names[heading]) in RADIANS,
+        unit=_unit(plain_name(names[power])),
+        time=column_of(names, "at_s", "time_s", "time", "t", "timestamp"),
+        lat=column_of(names, "lat", "lat_deg", "latitude", "latitude_deg"),
+        lon=column_of(names, "lon", "lon_deg", "longitude", "longitude_deg"),
+        frequency=column_of(names, "frequency_hz", "frequency"),
+        tag=column_of(names, "tag", "tag_id", "tagid"),
+        turns=tuple(column for column in turns if column is not None),
+    )
+
+
+def _unit(name: str) -> Unit:
+    if name in LINEAR:
+        return "linear"
+    return "decibels" if name.endswith(_DECIBELS) else "unnamed"
+
+
+def _unnamed(table: Table, rows: Sequence[Row]) -> Columns:
+    """Heading and power; of more than two columns only where these cannot be a time and a heading."""
+    wide = [row for row in rows if row.numbers_beyond(2)]
+    if 2 * len(wide) < len(rows):
+        return Columns(0, 1, 2)
+    if commas_in_numbers(wide):
+        raise RecordingError(TooManyCells(str(table.path), wide[0].line, len(wide[0].cells), 2))
+    first = [value for row in wide if (value := row.number(0)) is not None]
+    second = [value for row in wide if (value := row.number(1)) is not None]
+    turned = bool(first) and max(map(abs, first)) <= 360.0 and max(first) - min(first) > HALF_TURN_DEG
+    if not (turned and second and max(second) < 0.0):
+        raise table.columns_unknown(wide[0], *EXPECTED)
+    return Columns(0, 1, None)

@@ -1,0 +1,127 @@
+"""Plain tables of heading and power as sweeps: one of each turn, of the tag that is asked for or heard most."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from hardware.direction_finding.plain_columns import Columns, columns_of
+from hardware.direction_finding.plain_turns import ELSEWHERE_M, HeardAt, place_of, turns_in
+from hardware.direction_finding.plain_units import decibels_doubted, refuse_radians
+from hardware.direction_finding.table_file import RecordingError, Row, Table, some_of
+from hardware.readings import Place, Sweep
+from hardware.reasons.table import (
+    NothingUsable,
+    OtherTagsLeftOut,
+    PlacesApart,
+    RowLeftOut,
+    TableRemark,
+    TagNotHeard,
+    TooManyCells,
+)
+
+NOTHING_DB = -200.0
+"""So little, or less, no receiver hears: files write it for "nothing"."""
+UNKNOWN_PLACE = Place(0.0, 0.0)
+
+
+def read_plain(table: Table, tag: str | None) -> tuple[list[tuple[Sweep, bool]], list[TableRemark]]:
+    """([(sweep, whether the file tells where it was taken)], remarks). Raises RecordingError when nothing is left.
+
+    Two columns (heading, power), or a header that names them and, if known, time, lat, lon, frequency, tag and sweep.
+    """
+    columns, rows = columns_of(table)
+    heard, remarks = _heard(table, columns, rows)
+    file = str(table.path)
+    turns = turns_in(heard, columns)
+    sweeps = [sweep for turn in turns if (sweep := _sweep(file, turn, columns, tag, remarks)) is not None]
+    if not sweeps:
+        raise RecordingError(next(remark for remark in remarks if isinstance(remark, TagNotHeard)))
+    return sweeps, remarks
+
+
+def _heard(table: Table, columns: Columns, rows: Sequence[Row]) -> tuple[list[HeardAt], list[TableRemark]]:
+    """The usable rows. Raises RecordingError when there is none, and for units that are not degrees and decibels."""
+    file = str(table.path)
+    remarks: list[TableRemark] = []
+    good: list[tuple[Row, float, float]] = []
+    for row in rows:
+        heading, power = row.number(columns.heading), row.number(columns.power)
+        if columns.width is not None and row.numbers_beyond(columns.width):
+            remarks.append(RowLeftOut(file, row.line, "wide"))
+        elif heading is None or not math.isfinite(heading):
+            remarks.append(table.cell_unusable(row, columns.heading, "heading"))
+        elif power is None or not NOTHING_DB < power < math.inf:
+            remarks.append(table.cell_unusable(row, columns.power, "power"))
+        else:
+            good.append((row, heading, power))
+    if not good:
+        raise RecordingError(_nothing(file, columns, rows, remarks))
+    refuse_radians(file, columns, [heading for _, heading, _ in good])
+    doubt = decibels_doubted(file, columns, [power for _, _, power in good])
+    heard = [
+        HeardAt(row, _value(row, columns.time, float(k)), heading % 360.0, power, _place(row, columns))
+        for k, (row, heading, power) in enumerate(good)
+    ]
+    return heard, remarks if doubt is None else [doubt, *remarks]
+
+
+def _nothing(
+    file: str, columns: Columns, rows: Sequence[Row], remarks: Sequence[TableRemark]
+) -> TooManyCells | NothingUsable:
+    first, row = remarks[0], rows[0]
+    if isinstance(first, RowLeftOut) and columns.width is not None:
+        return TooManyCells(file, row.line, len(row.cells), columns.width)
+    return NothingUsable(file, "power", first)
+
+
+def _sweep(
+    file: str, turn: list[HeardAt], columns: Columns, tag: str | None, remarks: list[TableRemark]
+) -> tuple[Sweep, bool] | None:
+    """None, with a remark, where the tag was not heard."""
+    line, wanted = turn[0].row.line, tag
+    tags = [_tag(one.row, columns) for one in turn]
+    named = Counter(name for name in tags if name)
+    if named:
+        wanted = named.most_common(1)[0][0] if tag is None else tag
+        if wanted not in named:
+            remarks.append(TagNotHeard(file, line, wanted, some_of(named)))
+            return None
+        if tag is None and len(set(tags)) > 1:
+            others = some_of(name or "-" for name in set(tags) - {wanted})
+            remarks.append(OtherTagsLeftOut(file, line, wanted, len(turn) - named[wanted], others))
+        turn = [one for one, name in zip(turn, tags, strict=True) if name == wanted]
+    found = place_of(turn)
+    if found is not None and found[1] > ELSEWHERE_M:
+        remarks.append(PlacesApart(file, line, found[1]))
+    frequencies = [value for one in turn if (value := _value(one.row, columns.frequency, 0.0)) != 0.0]
+    sweep = Sweep(
+        at_s=np.array([one.at_s for one in turn]),
+        heading_deg=np.array([one.heading_deg for one in turn]),
+        power_db=np.array([one.power_db for one in turn]),
+        frequency_hz=float(np.median(frequencies)) if frequencies else 0.0,
+        position=UNKNOWN_PLACE if found is None else found[0],
+        altitude_amsl_m=0.0,
+        tag=wanted,
+    )
+    return sweep, found is not None
+
+
+def _tag(row: Row, columns: Columns) -> str:
+    """Empty where the row names none."""
+    return row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else ""
+
+
+def _place(row: Row, columns: Columns) -> Place | None:
+    if columns.lat is None or columns.lon is None:
+        return None
+    lat, lon = _value(row, columns.lat, math.inf), _value(row, columns.lon, math.inf)
+    return Place(lat, lon) if abs(lat) <= 90.0 and abs(lon) <= 180.0 else None
+
+
+def _value(row: Row, column: int | None, otherwise: float) -> float:
+    value = None if column is None else row.number(column)
+    return otherwise if value is None or not math.isfinite(value) else value

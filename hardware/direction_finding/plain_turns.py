@@ -1,0 +1,89 @@
+"""The turns in a plain table: as a column numbers them, or, where one was made at each place, by place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hardware.direction_finding.plain_columns import HALF_TURN_DEG, Columns
+from hardware.direction_finding.table_file import Row
+from hardware.frame import LocalFrame
+from hardware.readings import Place
+
+ELSEWHERE_M = 20.0
+"""A hovering vehicle stays nearer to where its turn began."""
+MOST_PLACES = 200
+"""Of a table with more the rows were taken on the way."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeardAt:
+    """One usable row. heading_deg: [0, 360). at_s: as the table tells, else its number in the file. place None: it does
+    not tell."""
+
+    row: Row
+    at_s: float
+    heading_deg: float
+    power_db: float
+    place: Place | None
+
+
+def turns_in(heard: Sequence[HeardAt], columns: Columns) -> list[list[HeardAt]]:
+    """The rows of each turn, in the order in which turns begin; at least one turn of at least one row."""
+    numbering = [column for column in columns.turns if _numbers_turns(heard, column)]
+    if not numbering:
+        return _by_place(heard) or [list(heard)]
+    turns: dict[tuple[str, ...], list[HeardAt]] = {}
+    for one in heard:
+        turns.setdefault(tuple(_cell(one, column) for column in numbering), []).append(one)
+    return list(turns.values())
+
+
+def _numbers_turns(heard: Sequence[HeardAt], column: int) -> bool:
+    """Rather than holds something that was measured, and changes from row to row."""
+    return 2 * len({_cell(one, column) for one in heard}) <= len(heard)
+
+
+def _cell(one: HeardAt, column: int) -> str:
+    return one.row.cells[column] if column < len(one.row.cells) else ""
+
+
+def _by_place(heard: Sequence[HeardAt]) -> list[list[HeardAt]] | None:
+    """None unless it went round at each of several places."""
+    places = np.array([(one.place.lon, one.place.lat) for one in heard if one.place is not None])
+    if not places.size:
+        return None
+    points = iter(LocalFrame(Place(*places[0, ::-1])).to_enu_points(places).tolist())
+    stands: list[tuple[float, float]] = []
+    turns: list[list[HeardAt]] = [[]]
+    now = 0
+    for one in heard:
+        if one.place is not None:
+            here = next(points)
+            now = next((k for k, there in enumerate(stands) if math.dist(here, there) <= ELSEWHERE_M), len(stands))
+            if now == MOST_PLACES:
+                return None
+            stands[now : now + 1] = [here]
+        if now == len(turns):
+            turns.append([])
+        turns[now].append(one)
+    return turns if len(turns) > 1 and all(_turned_deg(turn) >= HALF_TURN_DEG for turn in turns) else None
+
+
+def _turned_deg(turn: Sequence[HeardAt]) -> float:
+    """Of the circle, without the widest gap in it."""
+    headings = np.sort([one.heading_deg for one in turn])
+    return 360.0 - float(np.max(np.diff(headings, append=headings[0] + 360.0)))
+
+
+def place_of(turn: Sequence[HeardAt]) -> tuple[Place, float] | None:
+    """Where a turn was made, and how far from there its farthest row was taken (m); None: no row tells."""
+    places = np.array([(one.place.lon, one.place.lat) for one in turn if one.place is not None])
+    if not places.size:
+        return None
+    lon, lat = np.median(places, axis=0)
+    middle = Place(float(lat), float(lon))
+    return middle, float(np.max(np.hypot(*LocalFrame(middle).to_enu_points(places).T)))

@@ -1,0 +1,99 @@
+"""Which column of a plain table holds what; what cannot be told apart is refused, and numbers are never cut in two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from refusals import refusing
+
+from hardware.direction_finding.recordings import read_recording
+from hardware.direction_finding.table_file import RecordingError
+from hardware.reasons.table import ColumnsUnknown, RowLeftOut, TooManyCells
+
+ROWS = [(float(heading) + 0.25, -60.5 - heading / 20) for heading in range(0, 360, 10)]
+EXPECTED = ("heading_deg", "power_db")
+
+
+def file_of(folder: Path, *lines: str) -> Path:
+    path = folder / "turn.csv"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "Heading (deg),Power (dBm)",
+        "yaw [deg],RSSI [dBm]",
+        "Heading [°],Signal strength (dB)",
+        "azimuth/degrees,power_dBFS",
+        "bearing_deg,rssi",
+        "heading,signal_strength_dbm",
+        "Richtung,Pegel",
+        "Kurs (°),Leistung [dBm]",
+    ],
+)
+def test_names_are_read_with_their_unit_in_any_brackets(tmp_path: Path, header: str) -> None:
+    german = header.replace(",", ";"), *(f"{heading};{power}".replace(".", ",") for heading, power in ROWS)
+    english = header, *(f"{heading},{power}" for heading, power in ROWS)
+    for lines in (german, english):
+        recording = read_recording(file_of(tmp_path, *lines))
+        (recorded,) = recording.sweeps
+        assert recorded.sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
+        assert recorded.sweep.power_db.tolist() == [power for _, power in ROWS]
+        assert recording.remarks == ()
+
+
+def test_a_table_with_a_heading_and_a_bearing_is_turned_by_the_heading(tmp_path: Path) -> None:
+    path = file_of(tmp_path, "bearing_deg,heading_deg,power_db", *(f"12,{heading},{power}" for heading, power in ROWS))
+    assert read_recording(path).sweeps[0].sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
+
+
+def test_rows_with_more_numbers_than_columns_are_left_out_with_their_line(tmp_path: Path) -> None:
+    lines = [f"{heading},{power}" for heading, power in ROWS]
+    path = file_of(tmp_path, "heading_deg,power_db", *lines[:3], "12,50,-73,20", *lines[3:], "30,-60,hill", "40,-60,,")
+    recording = read_recording(path)
+    assert recording.remarks == (RowLeftOut(str(path), 5, "wide"),)
+    assert recording.sweeps[0].sweep.power_db.size == len(ROWS) + 2
+    path = file_of(tmp_path, *lines, "12,50,-73,20")
+    assert read_recording(path).remarks == (RowLeftOut(str(path), len(ROWS) + 1, "wide"),)
+
+
+@pytest.mark.parametrize(
+    ("lines", "line", "cells"),
+    [
+        (["heading_deg,power_db", "12,50,-73,20", "13,-73,25"], 2, 4),
+        (["12,50,-73,20", "13,-73,25"], 1, 4),
+        (["12,-73,20", "13,-73,25"], 1, 3),
+    ],
+)
+def test_decimal_commas_between_commas_are_refused_with_the_remedy(
+    tmp_path: Path, lines: list[str], line: int, cells: int
+) -> None:
+    path = file_of(tmp_path, *lines)
+    with refusing(TooManyCells(str(path), line, cells, 2), RecordingError):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        lambda k, heading, power: f"{k}.5,{heading},{power}",
+        lambda k, heading, power: f"{1_780_000_000 + k},{heading - 180.0},{power}",
+        lambda k, heading, power: f"{heading},{k},{power}",
+        lambda k, heading, power: f"{heading},{power + 90},50.6,7.2",
+    ],
+)
+def test_three_unnamed_columns_ask_for_a_header(tmp_path: Path, row: Callable[[int, float, float], str]) -> None:
+    path = file_of(tmp_path, *(row(k, *pair) for k, pair in enumerate(ROWS)))
+    columns = len(path.read_text().splitlines()[0].split(","))
+    with refusing(ColumnsUnknown(str(path), 1, columns, EXPECTED), RecordingError):
+        read_recording(path)
+
+
+def test_headings_of_a_turn_before_power_below_zero_need_no_header(tmp_path: Path) -> None:
+    path = file_of(tmp_path, *(f"{heading},{power},50.61,7.25" for heading, power in ROWS))
+    (recorded,) = read_recording(path).sweeps
+    assert recorded.sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
