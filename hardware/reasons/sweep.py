@@ -106,7 +106,9 @@ class TurnIncomplete:
     code: Literal["turn_incomplete"] = "turn_incomplete"
 
     english: ClassVar[Words] = Words(
-        "Power was heard over only {heard_deg} of the turn.", "Turn once all the way round while the receiver listens."
+        "Power was heard over only {heard_deg} of the turn.",
+        "Turn once all the way round while the receiver listens. If that was done, no pulse was heard in the other "
+        "directions: measure nearer to the emitter.",
     )
 
 

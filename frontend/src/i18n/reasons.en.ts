@@ -419,7 +419,8 @@ export const reasonsEn: ReasonTable = {
   },
   turn_incomplete: {
     text: "Power was heard over only {heard_deg} of the turn.",
-    remedy: "Turn once all the way round while the receiver listens.",
+    remedy:
+      "Turn once all the way round while the receiver listens. If that was done, no pulse was heard in the other directions: measure nearer to the emitter.",
   },
   constant_power: {
     text: "The receiver shows the same power in every direction: a constant, not a signal.",

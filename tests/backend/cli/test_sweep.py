@@ -105,6 +105,15 @@ def test_a_plain_table_of_several_turns_and_tags_prints_an_array_of_the_tag_that
     assert "A, B" in refused.stderr
 
 
+def test_a_turn_heard_in_part_may_have_been_a_whole_one_of_which_only_strong_pulses_were_heard(tmp_path: Path) -> None:
+    path = tmp_path / "plain.csv"
+    path.write_text("\n".join(f"{heading},{-60 - abs(heading - 50) / 10}" for heading in range(0, 91, 5)))
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+    assert not answer["accepted"]
+    assert "only 90 degrees of the turn" in answer["reason"]
+    assert "no pulse was heard in the other directions" in answer["reason"]
+
+
 @pytest.mark.parametrize("first_deg", [0.0, 100.0, 215.0])
 def test_a_turn_of_270_degrees_gives_the_bearing_wherever_the_gap_lies(tmp_path: Path, first_deg: float) -> None:
     """Within two of its sigmas, and into the gap no sharper than outside it."""

@@ -65,7 +65,8 @@ export const sweep = {
   },
   turn_incomplete: {
     text: "Nur über {heard_deg} der Drehung war etwas zu hören.",
-    remedy: "Einmal ganz herum drehen, während der Empfänger hört.",
+    remedy:
+      "Einmal ganz herum drehen, während der Empfänger hört. Wurde das getan, war in den übrigen Richtungen kein Puls zu hören: näher am Sender messen.",
   },
   constant_power: {
     text: "Der Empfänger zeigt in jeder Richtung dieselbe Leistung: einen festen Wert, kein Signal.",
