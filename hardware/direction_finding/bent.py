@@ -52,7 +52,8 @@ def bent(
     """known: log evidence of other shapes, a mean over bearings of +- known_reach_deg. level_db: the direct wave's,
     roughly, where the antenna is strongest; noise_db: the receiver's floor, None: unknown."""
     at: NDArray[np.float64] = np.arange(0.0, 360.0, STEP_DEG)
-    log_density = log_sum(log_evidence(lobes, slices, at, level_db, noise_db), axis=0) - math.log(len(lobes.mean_db))
+    of_each = log_evidence(lobes, slices, at, level_db, noise_db)
+    log_density = log_sum(of_each, axis=0) - math.log(len(of_each))
     evidence = float(log_sum(log_density)) - math.log(2.0 * known_reach_deg / STEP_DEG)
     mode = float(at[int(np.argmax(log_density))])
     off = (at - mode + 180.0) % 360.0 - 180.0

@@ -11,7 +11,6 @@ lobe most. k and s are one of three each (bent_lobes.py has the evidence).
 from __future__ import annotations
 
 import math
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,5 +32,4 @@ def fading_field(pattern: AntennaPattern) -> BentLobes:
     """What fading makes of one antenna, for each slope and spread."""
     x: NDArray[np.float64] = np.arange(0.0, 360.0, BIN_DEG)
     gain_db = np.maximum(pattern.gain_at(x) - float(pattern.gain_db.max()), -DEEPEST_DB)
-    slope, spread_db = np.array(list(product(SLOPES, SPREADS_DB))).T
-    return BentLobes(slope[:, None] * gain_db, np.repeat(spread_db[:, None], BINS, axis=1), _WAVES)
+    return BentLobes(np.outer(SLOPES, gain_db), np.ones((len(SLOPES), BINS)), _WAVES, SPREADS_DB)

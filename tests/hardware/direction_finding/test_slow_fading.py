@@ -9,9 +9,12 @@ import pytest
 from numpy.typing import NDArray
 
 from hardware.direction_finding import explained
+from hardware.direction_finding.bent_lobes import BentLobes, log_evidence
 from hardware.direction_finding.comparison import beam, known_right
 from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.direction_finding.slices import slices_of
 from hardware.direction_finding.slow_fading import SLOPES, SPREADS_DB, fading_field
+from hardware.direction_finding.sweep import bin_sweep
 from hardware.readings import Place, Sweep
 
 BEAM = known_right(beam(60.0))
@@ -56,6 +59,16 @@ def test_bearings_are_better_for_it_and_within_their_sigma(heard: Heard, monkeyp
 
 def test_it_bends_the_lobe_and_the_back_alike() -> None:
     field = fading_field(BEAM)
-    assert field.mean_db.shape == (len(SLOPES) * len(SPREADS_DB), 180)
-    assert np.ptp(field.spread_db, axis=1) == pytest.approx(0.0)
+    assert np.ptp(field.spread_db) == 0.0
     assert field.mean_db[-1] == pytest.approx(SLOPES[-1] * field.mean_db[0])
+    assert field.times == SPREADS_DB
+
+
+@pytest.mark.parametrize("noise_db", [None, -58.0])
+def test_lobes_bent_several_times_as_much_are_as_so_many_lobes(noise_db: float | None) -> None:
+    field, at = fading_field(BEAM), np.arange(0.0, 360.0, 20.0)
+    binned = bin_sweep(HEADINGS, fading(BEAM.gain_at(80.0 - HEADINGS), np.random.default_rng(3)) - 50.0, 0.0)
+    slices = slices_of(binned, binned.power_db)
+    each = [BentLobes(field.mean_db, times * field.spread_db, field.waves) for times in field.times]
+    alone = np.stack([log_evidence(lobes, slices, at, -50.0, noise_db) for lobes in each], axis=1)
+    assert log_evidence(field, slices, at, -50.0, noise_db) == pytest.approx(alone.reshape(-1, at.size), abs=1e-9)
