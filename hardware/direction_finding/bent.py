@@ -12,6 +12,7 @@ from hardware.direction_finding.bent_lobes import BentLobes, log_evidence
 from hardware.direction_finding.slices import Slices, log_sum
 
 STEP_DEG = 5.0
+BEARINGS_DEG: NDArray[np.float64] = np.arange(0.0, 360.0, STEP_DEG)
 MODE_REACH_DEG = 50.0
 """The bearing is the mean of the density within this of its maximum."""
 SPREAD_REACH_DEG = 60.0
@@ -51,8 +52,12 @@ def bent(
 ) -> Bent:
     """known: log evidence of other shapes, a mean over bearings of +- known_reach_deg. level_db: the direct wave's,
     roughly, where the antenna is strongest; noise_db: the receiver's floor, None: unknown."""
-    at: NDArray[np.float64] = np.arange(0.0, 360.0, STEP_DEG)
-    of_each = log_evidence(lobes, slices, at, level_db, noise_db)
+    return found_in(log_evidence(lobes, slices, BEARINGS_DEG, level_db, noise_db), known, known_reach_deg)
+
+
+def found_in(of_each: NDArray[np.float64], known: float, known_reach_deg: float) -> Bent:
+    """of_each: (v, 72) log evidence from BEARINGS_DEG of lobes that are equally likely."""
+    at = BEARINGS_DEG
     log_density = log_sum(of_each, axis=0) - math.log(len(of_each))
     evidence = float(log_sum(log_density)) - math.log(2.0 * known_reach_deg / STEP_DEG)
     mode = float(at[int(np.argmax(log_density))])

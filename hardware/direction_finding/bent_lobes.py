@@ -25,15 +25,11 @@ _DB = 10.0 / math.log(10.0)
 
 @dataclass(frozen=True, slots=True)
 class BentLobes:
-    """Some lobes, every 2 degrees of x = bearing - heading. mean_db, spread_db: (v, 180) M and s. waves: (180, q) W.
-
-    times: (u,) each lobe may be bent by so many times s.
-    """
+    """Some lobes, every 2 degrees of x = bearing - heading. mean_db, spread_db: (v, 180) M and s. waves: (180, q) W."""
 
     mean_db: NDArray[np.float64]
     spread_db: NDArray[np.float64]
     waves: NDArray[np.float64]
-    times: tuple[float, ...] = (1.0,)
 
 
 def waves_of(spectrum: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -49,8 +45,7 @@ def waves_of(spectrum: NDArray[np.float64]) -> NDArray[np.float64]:
 def log_evidence(
     lobes: BentLobes, slices: Slices, bearing_deg: NDArray[np.float64], level_db: float, noise_db: float | None
 ) -> NDArray[np.float64]:
-    """(v u, j): of each lobe, bent so much, from (j,) bearings; its bending, level (flat) and noise (log-normal)
-    integrated out.
+    """(v, j): of each lobe from (j,) bearings, its bending, level (flat) and noise (log-normal) integrated out.
 
     level_db: the wave's power where the antenna is strongest, roughly; noise_db: the receiver's floor, None: unknown.
     """
@@ -72,9 +67,8 @@ def log_evidence(
     explained = np.where(variance > 1e-6, along / np.maximum(variance, 1e-6), 0.0)
     rest = np.maximum(np.sum(residual**2, axis=-1) - explained.sum(axis=-1), 0.0)[..., None]
     noise = NOISE_DB**2
-    by_times = np.maximum(variance, 0.0)[:, None] * np.square(lobes.times)[:, None, None]
-    spread = by_times[..., None, :] + noise[:, None]
-    squares = np.sum(explained[:, None, :, None, :] / spread, axis=-1) + rest[:, None] / noise
+    spread = np.maximum(variance, 0.0)[..., None, :] + noise[:, None]
+    squares = np.sum(explained[..., None, :] / spread, axis=-1) + rest / noise
     volume = np.sum(np.log(spread), axis=-1) + (count - 1 - harmonics) * np.log(noise)
-    log_likelihood = -0.5 * (squares + volume + np.log(norm / count)[:, None, :, None])
-    return log_sum(log_likelihood + LOG_NOISE_PRIOR, axis=-1).reshape(-1, bearing_deg.size)
+    log_likelihood = -0.5 * (squares + volume + np.log(norm / count)[..., None])
+    return log_sum(log_likelihood + LOG_NOISE_PRIOR, axis=-1)

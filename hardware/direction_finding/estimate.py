@@ -24,8 +24,9 @@ from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.bent_lobes import BentLobes
 from hardware.direction_finding.beside_lobe import beside_lobe_sigma_deg
 from hardware.direction_finding.circle import SweepLikelihood, sweep_likelihood
-from hardware.direction_finding.explained import Explained, bent_by_all, explained_by, of_all
+from hardware.direction_finding.explained import Explained, explained_by, of_all
 from hardware.direction_finding.likely_too import likely_too, new_beside
+from hardware.direction_finding.many_echoes import echo_field
 from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
 from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
@@ -85,7 +86,7 @@ class _Prepared:
     bank: PatternBank
     curve: PatternCurve
     alternatives: Alternatives
-    bent: tuple[BentLobes, ...]
+    echoes: BentLobes
 
 
 @dataclass(slots=True)
@@ -122,7 +123,7 @@ class SparseDirectionFinder:
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
         if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
             return refused(binned, NothingAboveNoise(HEARD_DB))
-        explained = explained_by(alternatives, prepared.bent, pattern, binned, refined, noise_db)
+        explained = explained_by(alternatives, prepared.echoes, curve, pattern, binned, refined, noise_db)
         return self._reading(pattern, curve, binned, parts, refined, explained, noise_db, sweep.drift_m)
 
     def _prepare(self, pattern: AntennaPattern) -> _Prepared:
@@ -131,7 +132,7 @@ class SparseDirectionFinder:
             if len(self._prepared) >= 16:
                 self._prepared.clear()
             self._prepared[key] = _Prepared(
-                PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern), bent_by_all(pattern)
+                PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern), echo_field(pattern)
             )
         return self._prepared[key]
 

@@ -38,7 +38,6 @@ from hardware.direction_finding.slices import (
 )
 from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep
 
-FEWEST_SLICES = 8
 WIDTHS_DEG = (50.0, 70.0, 95.0, 125.0)
 DEPTH_DB = 14.0
 LOBE_DB = 0.7
@@ -48,8 +47,6 @@ REACH_DEG = 60.0
 STEP_DEG = 5.0
 KNOWN_REACH_DEG = 40.0
 AXIS_WITHIN_DEG = 10.0
-FITS_DB = 0.4
-"""A sweep that some shape of the pattern fits so well needs no other antenna."""
 _OFF_DEG = (BIN_DEG * np.arange(BINS) + 180.0) % 360.0 - 180.0
 _LOBES_DB = DEPTH_DB * (1.0 - np.exp(-12.0 * (_OFF_DEG / np.array(WIDTHS_DEG)[:, None]) ** 2 / DEPTH_DB))
 # exp(-(d / a)^2 / 2) has the Fourier coefficients exp(-(n a)^2 / 2)
@@ -78,16 +75,9 @@ class OtherAntenna:
     log_density: NDArray[np.float64]
 
 
-def doubtful(binned: BinnedSweep, fitted_db: NDArray[np.float64]) -> Slices | None:
-    """The sweep's slices, where it is worth asking whether it shows something else than the pattern's likeliest shape.
-
-    fitted_db: (180,) that shape. None: it fits too well, or too little was heard.
-    """
-    slices = slices_of(binned, binned.power_db)
-    if slices.heading_deg.size < FEWEST_SLICES:
-        return None
-    residual_db = slices.power_db - slices_of(binned, fitted_db).power_db
-    return None if float(np.sqrt(np.mean(residual_db**2))) < FITS_DB else slices
+def left_over_db(slices: Slices, binned: BinnedSweep, fitted_db: NDArray[np.float64]) -> float:
+    """Root mean square of what fitted_db (180,), the pattern's likeliest shape, leaves of the binned sweep's slices."""
+    return float(np.sqrt(np.mean((slices.power_db - slices_of(binned, fitted_db).power_db) ** 2)))
 
 
 def known_antenna(

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from hardware.direction_finding import explained
-from hardware.direction_finding.bent_lobes import BentLobes, log_evidence
+from hardware.direction_finding.bent import BEARINGS_DEG
 from hardware.direction_finding.comparison import beam, known_right
 from hardware.direction_finding.estimate import SparseDirectionFinder
-from hardware.direction_finding.slices import slices_of
-from hardware.direction_finding.slow_fading import SLOPES, SPREADS_DB, fading_field
-from hardware.direction_finding.sweep import bin_sweep
+from hardware.direction_finding.refine import PatternCurve
+from hardware.direction_finding.slices import LOG_NOISE_PRIOR, NOISE_DB, Slices
+from hardware.direction_finding.slow_fading import ALIKE_DEG, SLOPES, SPREADS_DB, log_evidence
 from hardware.readings import Place, Sweep
 
 BEAM = known_right(beam(60.0))
@@ -57,18 +58,22 @@ def test_bearings_are_better_for_it_and_within_their_sigma(heard: Heard, monkeyp
     assert (rms, -held) < (0.95 * rms_without, -held_without)
 
 
-def test_it_bends_the_lobe_and_the_back_alike() -> None:
-    field = fading_field(BEAM)
-    assert np.ptp(field.spread_db) == 0.0
-    assert field.mean_db[-1] == pytest.approx(SLOPES[-1] * field.mean_db[0])
-    assert field.times == SPREADS_DB
-
-
 @pytest.mark.parametrize("noise_db", [None, -58.0])
-def test_lobes_bent_several_times_as_much_are_as_so_many_lobes(noise_db: float | None) -> None:
-    field, at = fading_field(BEAM), np.arange(0.0, 360.0, 20.0)
-    binned = bin_sweep(HEADINGS, fading(BEAM.gain_at(80.0 - HEADINGS), np.random.default_rng(3)) - 50.0, 0.0)
-    slices = slices_of(binned, binned.power_db)
-    each = [BentLobes(field.mean_db, times * field.spread_db, field.waves) for times in field.times]
-    alone = np.stack([log_evidence(lobes, slices, at, -50.0, noise_db) for lobes in each], axis=1)
-    assert log_evidence(field, slices, at, -50.0, noise_db) == pytest.approx(alone.reshape(-1, at.size), abs=1e-9)
+def test_its_evidence_is_that_of_the_equation(noise_db: float | None) -> None:
+    heard = fading(BEAM.gain_at(80.0 - HEADINGS), np.random.default_rng(3)) - 50.0
+    found = log_evidence(PatternCurve(BEAM), Slices(HEADINGS, heard, smooth=False), -50.0, noise_db)
+    apart = (HEADINGS[:, None] - HEADINGS + 180.0) % 360.0 - 180.0
+    alike = np.exp(-0.5 * (apart / ALIKE_DEG) ** 2)
+    for row, (slope, spread_db) in enumerate(product(SLOPES, SPREADS_DB)):
+        for column in (0, 17, 50):
+            gain_db = PatternCurve(BEAM).gain_db(BEARINGS_DEG[column] - HEADINGS) - PatternCurve(BEAM).peak_db
+            wave = 10.0 ** ((slope * gain_db - 50.0) / 10.0)
+            total = wave + (0.0 if noise_db is None else 10.0 ** (noise_db / 10.0))
+            rest, level = heard - 10.0 * np.log10(total), wave / total
+            each = []
+            for noise, prior in zip(NOISE_DB, LOG_NOISE_PRIOR, strict=True):
+                c = spread_db**2 * alike + noise**2 * np.eye(HEADINGS.size)
+                inverse, held = np.linalg.inv(c), level @ np.linalg.solve(c, level)
+                squares = rest @ inverse @ rest - (level @ inverse @ rest) ** 2 / held
+                each.append(prior - 0.5 * (squares + np.linalg.slogdet(c)[1] + np.log(held / HEADINGS.size)))
+            assert found[row, column] == pytest.approx(np.logaddexp.reduce(each), abs=1e-6)
