@@ -107,8 +107,7 @@ class TurnIncomplete:
 
     english: ClassVar[Words] = Words(
         "Power was heard over only {heard_deg} of the turn.",
-        "Turn once all the way round while the receiver listens. If that was done, no pulse was heard in the other "
-        "directions: measure nearer to the emitter.",
+        "Turn once all the way round while the receiver listens, or nearer to the emitter.",
     )
 
 
@@ -182,8 +181,7 @@ class OtherDirectionLikely:
     code: Literal["other_direction_likely"] = "other_direction_likely"
 
     english: ClassVar[Words] = Words(
-        "The sweep fits {other_bearing_deg} nearly as well as its bearing.",
-        "Listen from another place: only one of the two directions fits there, too.",
+        "The sweep fits {other_bearing_deg} nearly as well.", "Listen from another place, too."
     )
 
 

@@ -75,9 +75,8 @@ class TooManyCells:
     code: Literal["too_many_cells"] = "too_many_cells"
 
     english: ClassVar[Words] = Words(
-        "The rows of {file} do not fit its columns: {cells|cell|cells} for {columns|column|columns} in line {line}.",
-        "If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else name "
-        "every column in a header line.",
+        "Line {line} of {file} has {cells|cell|cells} for {columns|column|columns}.",
+        "With decimal commas, separate columns by semicolons; else name every column.",
     )
 
 
@@ -91,10 +90,7 @@ class HeadingsInRadians:
     most: float
     code: Literal["headings_in_radians"] = "headings_in_radians"
 
-    english: ClassVar[Words] = Words(
-        "The headings in column {column} of {file} ({least:2} to {most:2}) seem to be radians.",
-        "Write them in degrees clockwise from north.",
-    )
+    english: ClassVar[Words] = Words("The headings of {file} seem to be radians.", "Write degrees.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,9 +105,8 @@ class PowerLinear:
     code: Literal["power_linear"] = "power_linear"
 
     english: ClassVar[Words] = Words(
-        "The power in column {column} of {file} ({least} to {most}) {by?name=is named as linear|values=seems to be "
-        "linear}, not in decibels.",
-        "Write ten times its decimal logarithm{by?name=|values=; if it is decibels, name the column power_db}.",
+        "The power of {file} {by?name=is named as linear|values=seems to be linear}.",
+        "Write decibels, and name the column power_db.",
     )
 
 
@@ -145,8 +140,7 @@ class RowLeftOut:
         "not_open=it ends a rotation that was never begun|"
         "two_offsets=columns 20 and 21 both carry an antenna offset|wide=it has more numbers than there are columns}.",
         "{why?two_offsets=Add a header line that names the right one.|"
-        "wide=If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else "
-        "name every column in a header line.|*=}",
+        "wide=With decimal commas, separate columns by semicolons; else name every column.|*=}",
     )
 
 
@@ -214,11 +208,7 @@ class DecibelsAssumed:
     most: float
     code: Literal["decibels_assumed"] = "decibels_assumed"
 
-    english: ClassVar[Words] = Words(
-        "The power in column {column} of {file} ({least:2} to {most:2}) has no unit and no negative value; it is taken "
-        "for decibels.",
-        "Name the column power_db if that is right; if it is linear, write ten times its decimal logarithm instead.",
-    )
+    english: ClassVar[Words] = Words("The power of {file} is taken for decibels.", "Name the column power_db if it is.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,8 +221,8 @@ class PlacesApart:
     code: Literal["places_apart"] = "places_apart"
 
     english: ClassVar[Words] = Words(
-        "The sweep from line {line} of {file} counts from one place, but rows of it were taken up to {apart_m} away.",
-        "If it is several turns, number them in a column named sweep.",
+        "The sweep from line {line} of {file} was taken at places {apart_m} apart.",
+        "Number several turns in a column named sweep.",
     )
 
 

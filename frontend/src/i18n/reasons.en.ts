@@ -419,8 +419,7 @@ export const reasonsEn: ReasonTable = {
   },
   turn_incomplete: {
     text: "Power was heard over only {heard_deg} of the turn.",
-    remedy:
-      "Turn once all the way round while the receiver listens. If that was done, no pulse was heard in the other directions: measure nearer to the emitter.",
+    remedy: "Turn once all the way round while the receiver listens, or nearer to the emitter.",
   },
   constant_power: {
     text: "The receiver shows the same power in every direction: a constant, not a signal.",
@@ -451,8 +450,8 @@ export const reasonsEn: ReasonTable = {
     remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
   },
   other_direction_likely: {
-    text: "The sweep fits {other_bearing_deg} nearly as well as its bearing.",
-    remedy: "Listen from another place: only one of the two directions fits there, too.",
+    text: "The sweep fits {other_bearing_deg} nearly as well.",
+    remedy: "Listen from another place, too.",
   },
   pulses_not_given: {
     text: "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, {unclear} that could be more than one's and {strangers} that fit none count for no tag.",
@@ -540,9 +539,8 @@ export const reasonsEn: ReasonTable = {
     remedy: "Check its path and its format.",
   },
   too_many_cells: {
-    text: "The rows of {file} do not fit its columns: {cells|cell|cells} for {columns|column|columns} in line {line}.",
-    remedy:
-      "If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else name every column in a header line.",
+    text: "Line {line} of {file} has {cells|cell|cells} for {columns|column|columns}.",
+    remedy: "With decimal commas, separate columns by semicolons; else name every column.",
   },
   file_unusable: {
     text: "The file {file} {why?not_text=is not a text file|empty=holds no rows of data|no_pulse=holds no pulse (no row that starts with 7)|one_heading=holds fewer than two rows of time and heading}.",
@@ -553,12 +551,12 @@ export const reasonsEn: ReasonTable = {
     remedy: "Name them in a header line: {expected}.",
   },
   headings_in_radians: {
-    text: "The headings in column {column} of {file} ({least:2} to {most:2}) seem to be radians.",
-    remedy: "Write them in degrees clockwise from north.",
+    text: "The headings of {file} seem to be radians.",
+    remedy: "Write degrees.",
   },
   power_linear: {
-    text: "The power in column {column} of {file} ({least} to {most}) {by?name=is named as linear|values=seems to be linear}, not in decibels.",
-    remedy: "Write ten times its decimal logarithm{by?name=|values=; if it is decibels, name the column power_db}.",
+    text: "The power of {file} {by?name=is named as linear|values=seems to be linear}.",
+    remedy: "Write decibels, and name the column power_db.",
   },
   cell_unusable: {
     text: 'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}.',
@@ -567,7 +565,7 @@ export const reasonsEn: ReasonTable = {
   row_left_out: {
     text: "Line {line} of {file} is left out: {why?columns=it has too few columns|not_open=it ends a rotation that was never begun|two_offsets=columns 20 and 21 both carry an antenna offset|wide=it has more numbers than there are columns}.",
     remedy:
-      "{why?two_offsets=Add a header line that names the right one.|wide=If numbers have decimal commas, separate the columns with semicolons or put the numbers in quotes; else name every column in a header line.|*=}",
+      "{why?two_offsets=Add a header line that names the right one.|wide=With decimal commas, separate columns by semicolons; else name every column.|*=}",
   },
   rotation_irregular: {
     text: "The rotation from line {line} of {file} {why?empty=holds no usable pulse and is left out|not_closed=is never closed (no row 11); it ends where the next one begins, or with the file|offset_changes=changes its antenna offset; the commonest is used}.",
@@ -586,12 +584,12 @@ export const reasonsEn: ReasonTable = {
     remedy: "To use another tag, name it.",
   },
   decibels_assumed: {
-    text: "The power in column {column} of {file} ({least:2} to {most:2}) has no unit and no negative value; it is taken for decibels.",
-    remedy: "Name the column power_db if that is right; if it is linear, write ten times its decimal logarithm instead.",
+    text: "The power of {file} is taken for decibels.",
+    remedy: "Name the column power_db if it is.",
   },
   places_apart: {
-    text: "The sweep from line {line} of {file} counts from one place, but rows of it were taken up to {apart_m} away.",
-    remedy: "If it is several turns, number them in a column named sweep.",
+    text: "The sweep from line {line} of {file} was taken at places {apart_m} apart.",
+    remedy: "Number several turns in a column named sweep.",
   },
   nothing_usable: {
     text: "The file {file} holds no usable {wanted?bearing=bearing|power=row of heading and power|pulse=pulse}. {because}",

@@ -20,9 +20,8 @@ export const recording = {
     remedy: "Sie in einer Kopfzeile nennen: {expected}.",
   },
   too_many_cells: {
-    text: "Die Zeilen von {file} passen nicht zu ihren Spalten: {cells|Zelle|Zellen} für {columns|Spalte|Spalten} in Zeile {line}.",
-    remedy:
-      "Haben Zahlen ein Dezimalkomma, die Spalten mit Semikolons trennen oder die Zahlen in Anführungszeichen setzen; sonst jede Spalte in einer Kopfzeile nennen.",
+    text: "Zeile {line} von {file} hat {cells|Zelle|Zellen} für {columns|Spalte|Spalten}.",
+    remedy: "Bei Dezimalkommas die Spalten mit Semikolons trennen; sonst jede Spalte nennen.",
   },
   cell_unusable: {
     text: "Zeile {line} von {file} ist ausgelassen: „{cell}“ in Spalte {column} ist {quantity?latitude=keine brauchbare Breite|longitude=keine brauchbare Länge|bearing=keine brauchbare Peilung|sigma=kein brauchbarer Peilfehler|time=keine brauchbare Zeit|heading=kein brauchbarer Kurs|power=keine brauchbare Leistung|frequency=keine brauchbare Frequenz|snr=kein brauchbares SNR|attitude=keine brauchbare Lage|noise_psd=keine brauchbare Rauschdichte|kind_of_row=keine Zeilenart (7, 10 oder 11)}.",
@@ -31,7 +30,7 @@ export const recording = {
   row_left_out: {
     text: "Zeile {line} von {file} ist ausgelassen: {why?columns=Sie hat zu wenige Spalten|not_open=Sie beendet eine Drehung, die nie begann|two_offsets=Die Spalten 20 und 21 nennen beide einen Antennenversatz|wide=Sie hat mehr Zahlen, als es Spalten gibt}.",
     remedy:
-      "{why?two_offsets=Eine Kopfzeile ergänzen, die den richtigen nennt.|wide=Haben Zahlen ein Dezimalkomma, die Spalten mit Semikolons trennen oder die Zahlen in Anführungszeichen setzen; sonst jede Spalte in einer Kopfzeile nennen.|*=}",
+      "{why?two_offsets=Eine Kopfzeile ergänzen, die den richtigen nennt.|wide=Bei Dezimalkommas die Spalten mit Semikolons trennen; sonst jede Spalte nennen.|*=}",
   },
   rotation_irregular: {
     text: "Die Drehung ab Zeile {line} von {file} {why?empty=enthält keinen brauchbaren Puls und ist ausgelassen|not_closed=wird nie beendet (keine Zeile 11); sie endet, wo die nächste beginnt, oder mit der Datei|offset_changes=wechselt ihren Antennenversatz; der häufigste wird verwendet}.",
@@ -49,20 +48,20 @@ export const recording = {
     remedy: "Um eine andere Kennung zu verwenden, sie nennen.",
   },
   decibels_assumed: {
-    text: "Die Leistung in Spalte {column} von {file} ({least:2} bis {most:2}) hat keine Einheit und keinen negativen Wert; sie wird als Dezibel genommen.",
-    remedy: "Stimmt das, die Spalte power_db nennen; ist sie linear, stattdessen das Zehnfache ihres dekadischen Logarithmus schreiben.",
+    text: "Die Leistung von {file} wird als Dezibel genommen.",
+    remedy: "Stimmt das, die Spalte power_db nennen.",
   },
   places_apart: {
-    text: "Die Drehung ab Zeile {line} von {file} zählt von einem Ort aus, doch Zeilen darin entstanden bis zu {apart_m} davon entfernt.",
-    remedy: "Sind es mehrere Drehungen, sie in einer Spalte namens sweep nummerieren.",
+    text: "Die Drehung ab Zeile {line} von {file} entstand an Orten, die {apart_m} auseinanderliegen.",
+    remedy: "Mehrere Drehungen in einer Spalte namens sweep nummerieren.",
   },
   headings_in_radians: {
-    text: "Die Kurse in Spalte {column} von {file} ({least:2} bis {most:2}) scheinen Radiant zu sein.",
-    remedy: "Sie in Grad im Uhrzeigersinn von Nord schreiben.",
+    text: "Die Kurse von {file} scheinen Radiant zu sein.",
+    remedy: "Grad schreiben.",
   },
   power_linear: {
-    text: "Die Leistung in Spalte {column} von {file} ({least} bis {most}) ist {by?name=dem Namen|values=den Werten} nach linear, nicht in Dezibel.",
-    remedy: "Das Zehnfache ihres dekadischen Logarithmus schreiben{by?name=|values=; sind es Dezibel, die Spalte power_db nennen}.",
+    text: "Die Leistung von {file} ist {by?name=dem Namen|values=den Werten} nach linear.",
+    remedy: "Dezibel schreiben und die Spalte power_db nennen.",
   },
   nothing_usable: {
     text: "Die Datei {file} enthält {wanted?bearing=keine brauchbare Peilung|power=keine brauchbare Zeile mit Kurs und Leistung|pulse=keinen brauchbaren Puls}. {because}",

@@ -65,8 +65,7 @@ export const sweep = {
   },
   turn_incomplete: {
     text: "Nur über {heard_deg} der Drehung war etwas zu hören.",
-    remedy:
-      "Einmal ganz herum drehen, während der Empfänger hört. Wurde das getan, war in den übrigen Richtungen kein Puls zu hören: näher am Sender messen.",
+    remedy: "Einmal ganz herum drehen, während der Empfänger hört, oder näher am Sender.",
   },
   constant_power: {
     text: "Der Empfänger zeigt in jeder Richtung dieselbe Leistung: einen festen Wert, kein Signal.",
@@ -94,8 +93,8 @@ export const sweep = {
     remedy: "Prüfen, welche Antenne montiert ist, und ihr Diagramm messen: crossfix calibrate.",
   },
   other_direction_likely: {
-    text: "Die Drehung passt fast ebenso gut zu {other_bearing_deg} wie zur Peilung.",
-    remedy: "Von einem anderen Ort hören: Dort passt nur eine der beiden Richtungen.",
+    text: "Die Drehung passt fast ebenso gut zu {other_bearing_deg}.",
+    remedy: "Auch von einem anderen Ort hören.",
   },
   not_the_measured_antenna: {
     text: "Das ist nicht die Antenne, die gemessen wurde: {sweeps} Drehungen weichen auf die gleiche Weise um {repeats_db:1} vom Diagramm {name} ab.",
