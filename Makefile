@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage check check-types check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
+.PHONY: run test coverage check check-types check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit played system stories clean help fly-real screens
 
 # The tests start some two hundred servers and vehicles: where no bytecode is kept, each compiles every source again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -66,11 +66,13 @@ browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
 test: ## everything CI runs
-	$(call step,1/3,packages; style; imports; schemas; figures; the page and its tests; machine code; unit tests,ten minutes)
+	$(call step,1/2,packages; style; imports; schemas; figures; the page and its tests; machine code; unit tests,ten minutes)
 	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page build unit PIP_COMPILES=--no-compile
-	$(call step,2/3,whole missions; they wait for the wall's clock: types are checked in what they leave of it,five minutes)
-	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse system check-types GIVING_WAY='nice -n 19'
-	$(call step,3/3,what a user does on the page; in Chromium,five minutes)
+	$(call step,2/2,whole missions; what a user does on the page in Chromium; types in what these leave of the processors,ten minutes)
+	@$(MAKE) --no-print-directory -j 2 played check-types GIVING_WAY='nice -n 19'
+
+played: ## whole missions and stories, one after the other, since they wait for the wall's clock
+	@$(MAKE) --no-print-directory system
 	@$(MAKE) --no-print-directory stories
 
 check: ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
