@@ -11,6 +11,7 @@ from typing import get_args, get_type_hints
 from backend.generated import write_or_check
 from backend.reasons import ReasonUnion
 from planner.reason import Reason as AnyReason
+from planner.reason import Words
 
 HEAD = """\
 // English for every reason, generated from the classes: `make codegen` writes it.
@@ -20,8 +21,6 @@ export const reasonsEn: ReasonTable = {
 """
 LINE = 140
 """As wide as the page's formatter makes a line."""
-KEPT_ON_LINE = ("text",)
-"""Keys so short that the formatter never begins a new line after them."""
 
 
 def reason_classes() -> tuple[type[AnyReason], ...]:
@@ -38,19 +37,16 @@ def code_of(reason: type[AnyReason]) -> str:
 
 def english_table() -> str:
     """TypeScript, formatted as the page's formatter would."""
-    entries = (
-        f"  {code_of(reason)}: {{\n"
-        f"{_entry('text', reason.english.text)}{_entry('remedy', reason.english.remedy)}"
-        "  },\n"
-        for reason in reason_classes()
-    )
+    entries = (_entry(code_of(reason), reason.english) for reason in reason_classes())
     return f"{HEAD}{''.join(entries)}}};\n"
 
 
-def _entry(key: str, words: str) -> str:
-    literal = _literal(words)
-    line = f"    {key}: {literal},\n"
-    return line if key in KEPT_ON_LINE or len(line) <= LINE + 1 else f"    {key}:\n      {literal},\n"
+def _entry(code: str, words: Words) -> str:
+    literals = [_literal(one) for one in (words.text, words.remedy) if one]
+    line = f"  {code}: [{', '.join(literals)}],\n"
+    if len(line) <= LINE + 1:
+        return line
+    return "".join([f"  {code}: [\n", *(f"    {literal},\n" for literal in literals), "  ],\n"])
 
 
 def _literal(words: str) -> str:

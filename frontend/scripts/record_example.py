@@ -47,14 +47,13 @@ PATIENCE = 600
 
 DECIMALS = 1
 DECIMALS_OF = {
-    "lat": 5, "lon": 5, "coordinates": 5, "quality": 2, "outlier_probability": 3, "pulse_width_s": 3,
+    "lat": 6, "lon": 6, "coordinates": 6, "quality": 2, "outlier_probability": 3, "pulse_width_s": 3,
     "position_age_s": 0, "heading_age_s": 0, "battery_age_s": 0, "mode_age_s": 0, "receiver_age_s": 0,
     "binned_db": 0, "fitted_db": 0, "power_db": 0, "heading_deg": 0, "value_s": 1, "std_error_s": 1,
 }  # fmt: skip
-"""Of degrees: 1 m."""
+"""Of degrees: 0.1 m."""
 PROGRESS_POINTS = 24
-STATUS_S = 8.0
-TELEMETRY_S = 2.5
+STATUS_S = 4.0
 CELLS = 6400
 DRAWN = 1e-3
 """Of the peak: what is less the map does not show."""
@@ -142,17 +141,13 @@ async def listen(running: RunningServer, mission_id: str) -> Said:
 
 def thinned(said: Said) -> Said:
     kept: Said = []
-    status_at_s, telemetry_at_s = -STATUS_S, -TELEMETRY_S
+    status_at_s = -STATUS_S
     for at_s, message in said:
         if isinstance(message, dict):
             if message["type"] == "status":
                 if at_s < status_at_s + STATUS_S:
                     continue
                 status_at_s = at_s
-            if message["type"] == "telemetry":
-                if at_s < telemetry_at_s + TELEMETRY_S:
-                    continue
-                telemetry_at_s = at_s
             if message["type"] == "sweep_progress":
                 step = -(-len(message["heading_deg"]) // PROGRESS_POINTS)
                 message |= {key: message[key][::step] for key in ("heading_deg", "power_db")}

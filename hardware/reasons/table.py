@@ -76,7 +76,7 @@ class TooManyCells:
 
     english: ClassVar[Words] = Words(
         "Line {line} of {file} has {cells|cell|cells} for {columns|column|columns}.",
-        "With decimal commas, separate columns by semicolons; else name every column.",
+        "If numbers have decimal commas, separate columns with semicolons; else name every column in a header line.",
     )
 
 
@@ -90,7 +90,9 @@ class HeadingsInRadians:
     most: float
     code: Literal["headings_in_radians"] = "headings_in_radians"
 
-    english: ClassVar[Words] = Words("The headings of {file} seem to be radians.", "Write degrees.")
+    english: ClassVar[Words] = Words(
+        "The headings in column {column} of {file} ({least:2} to {most:2}) seem to be radians.", "Write degrees."
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +107,8 @@ class PowerLinear:
     code: Literal["power_linear"] = "power_linear"
 
     english: ClassVar[Words] = Words(
-        "The power of {file} {by?name=is named as linear|values=seems to be linear}.",
+        "The power in column {column} of {file} ({least} to {most}) {by?name=is named as linear|"
+        "values=seems to be linear}.",
         "Write decibels, and name the column power_db.",
     )
 
@@ -140,7 +143,8 @@ class RowLeftOut:
         "not_open=it ends a rotation that was never begun|"
         "two_offsets=columns 20 and 21 both carry an antenna offset|wide=it has more numbers than there are columns}.",
         "{why?two_offsets=Add a header line that names the right one.|"
-        "wide=With decimal commas, separate columns by semicolons; else name every column.|*=}",
+        "wide=If numbers have decimal commas, separate columns with semicolons; else name every column in a header "
+        "line.|*=}",
     )
 
 
@@ -208,7 +212,10 @@ class DecibelsAssumed:
     most: float
     code: Literal["decibels_assumed"] = "decibels_assumed"
 
-    english: ClassVar[Words] = Words("The power of {file} is taken for decibels.", "Name the column power_db if it is.")
+    english: ClassVar[Words] = Words(
+        "The power in column {column} of {file} ({least:2} to {most:2}) is taken for decibels.",
+        "Name the column power_db if it is.",
+    )
 
 
 @dataclass(frozen=True, slots=True)

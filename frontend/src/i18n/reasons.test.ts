@@ -34,9 +34,11 @@ describe("the reasons", () => {
 
   it("say the same values in both languages, and a remedy in both or in none", () => {
     for (const code of CODES) {
-      expect(values(reasonsDe[code].text), code).toEqual(values(reasonsEn[code].text));
-      expect(values(reasonsDe[code].remedy), code).toEqual(values(reasonsEn[code].remedy));
-      expect(reasonsDe[code].remedy === "", code).toBe(reasonsEn[code].remedy === "");
+      const [[text, remedy], [germanText, germanRemedy]] = [reasonsEn[code], reasonsDe[code]];
+      expect(values(germanText), code).toEqual(values(text));
+      expect(values(germanRemedy ?? ""), code).toEqual(values(remedy ?? ""));
+      expect(germanRemedy === undefined, code).toBe(remedy === undefined);
+      expect([remedy, germanRemedy], code).not.toContain("");
     }
   });
 
@@ -51,7 +53,7 @@ describe("the reasons", () => {
   it("choose German words for the values that English has words for", () => {
     const choices = /\{(\w+)\?([^{}]*)\}/g;
     for (const code of CODES) {
-      const { text, remedy } = reasonsDe[code];
+      const [text, remedy = ""] = reasonsDe[code];
       for (const [, name, options] of `${text} ${remedy}`.matchAll(choices)) {
         const known = options!.split("|").map((option) => option.split("=")[0]!);
         const sent = EXAMPLES.filter(([reason]) => reason.code === code).flatMap(

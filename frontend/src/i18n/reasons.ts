@@ -17,8 +17,8 @@ export function sayReasonsIn(words: ReasonTable): void {
 
 /** A recording of a later server may hold a reason that this page does not know: its code is shown. */
 const wordsOf = ({ code }: Coded): Words => {
-  if (table.value === null) return { text: "…", remedy: "" };
-  return table.value[code as ReasonCode] ?? { text: code, remedy: "" };
+  if (table.value === null) return ["…"];
+  return table.value[code as ReasonCode] ?? [code];
 };
 
 const shown = (): Shown => ({

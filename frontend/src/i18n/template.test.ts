@@ -2,12 +2,12 @@ import { describe, expect, it } from "vitest";
 import { type Coded, remedyIn, type Shown, textIn, type Words } from "./template";
 
 const TABLE: Record<string, Words> = {
-  windy: { text: "Wind of {speed_m_s} from {side?n=the north|*=elsewhere}{until?none=|*= until noon}.", remedy: "" },
-  far: { text: "{distance_m} away, {area_m2}, {near_m:1}.", remedy: "Fly to {lat_deg@lon_deg}." },
-  many: { text: "{places|place|places}: {names}; {kinds?a=first|b=second}.", remedy: "" },
-  timed: { text: "{age_s}, {age_s:1}, {left_time_s}, {turn_deg}, {turn_deg_s}, {share_percent}.", remedy: "" },
-  heard: { text: "{carrier_hz}, {rate_hz}, {level_db}, {size_bytes}, {share}, {given:2}.", remedy: "" },
-  because: { text: "Not now. {because}", remedy: "{because!remedy}" },
+  windy: ["Wind of {speed_m_s} from {side?n=the north|*=elsewhere}{until?none=|*= until noon}."],
+  far: ["{distance_m} away, {area_m2}, {near_m:1}.", "Fly to {lat_deg@lon_deg}."],
+  many: ["{places|place|places}: {names}; {kinds?a=first|b=second}."],
+  timed: ["{age_s}, {age_s:1}, {left_time_s}, {turn_deg}, {turn_deg_s}, {share_percent}."],
+  heard: ["{carrier_hz}, {rate_hz}, {level_db}, {size_bytes}, {share}, {given:2}."],
+  because: ["Not now. {because}", "{because!remedy}"],
 };
 
 const shown = (part: Partial<Shown> = {}): Shown => ({

@@ -3,11 +3,8 @@ import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import type { Language } from "../units/locale";
 import { formatArea, formatDuration, formatLength, formatSpeed, type UnitSystem } from "../units/quantities";
 
-/** text: what is so. remedy: how to mend it, empty when there is nothing to do. */
-export interface Words {
-  text: string;
-  remedy: string;
-}
+/** What is so, and how to mend it where something can be done. */
+export type Words = readonly [text: string, remedy?: string];
 
 /** A reason as it came over the wire: a code and values in SI units. */
 export type Coded = { readonly code: string };
@@ -23,9 +20,9 @@ type Values = Readonly<Record<string, unknown>>;
 
 const PLACEHOLDER = /\{(\w+)(?:(!remedy)|@(\w+)|:(\d)|\|([^|{}]*)\|([^|{}]*)|\?([^{}]*))?\}/g;
 
-export const textIn = (shown: Shown, reason: Coded): string => fill(shown.wordsOf(reason).text, reason, shown);
+export const textIn = (shown: Shown, reason: Coded): string => fill(shown.wordsOf(reason)[0], reason, shown);
 
-export const remedyIn = (shown: Shown, reason: Coded): string => fill(shown.wordsOf(reason).remedy, reason, shown);
+export const remedyIn = (shown: Shown, reason: Coded): string => fill(shown.wordsOf(reason)[1] ?? "", reason, shown);
 
 function fill(template: string, reason: Coded, shown: Shown): string {
   const values = reason as unknown as Values;

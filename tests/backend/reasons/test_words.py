@@ -40,7 +40,7 @@ def test_no_two_reasons_share_a_code() -> None:
 def test_the_page_has_the_words_of_every_reason() -> None:
     table = english_table()
     for reason in reason_classes():
-        assert f"\n  {code_of(reason)}: {{\n" in table
+        assert f"\n  {code_of(reason)}: [" in table
 
 
 def test_words_with_quotes_are_escaped_once() -> None:
