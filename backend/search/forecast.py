@@ -120,7 +120,7 @@ def compare(
     else:
         without = [task.frame.to_enu(p) for p in avoid]
         rules = rules_against(problem, belief, here, by_claim=found.by_claim, without=without)
-    return replace(compared, rules=tuple(rule for rule in rules))
+    return replace(compared, rules=tuple(rules))
 
 
 def _way(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:

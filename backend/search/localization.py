@@ -205,7 +205,7 @@ class Localization:
         doubt = offset if offset is not None and offset.significant else None
         shown = self.planning_belief(bearings) if folded is None else folded
         askew = () if doubt is None else (HeadingsAskew(doubt.offset_deg, doubt.std_error_deg),)
-        not_yet: list[Reason] = [*(reason for reason in said.reasons), *askew]
+        not_yet: list[Reason] = [*said.reasons, *askew]
         fact = BeliefUpdated(
             emitter_id=self.emitter_id,
             bearings=len(bearings),

@@ -32,8 +32,8 @@ from hardware.direction_finding.sweep import BinnedSweep
 
 FEWEST_SLICES = 8
 FITS_DB, MAY_FADE_DB = 0.8, 0.4
-"""A sweep that some shape of the pattern fits so well needs no other antenna and no more echoes; none to which it was
-nearer than the second faded."""
+"""Where the pattern's likeliest shape leaves less than the first, neither another antenna nor many echoes are asked
+about; where it leaves less than the second, fading is not either."""
 OTHER_ODDS = 3.0
 """Of another antenna to the pattern's before the sweep is seen, when nobody checked the pattern on the vehicle."""
 OTHER_ODDS_BORROWED = 8.0

@@ -33,7 +33,7 @@ class ReadingsLeftOut:
 
 @dataclass(frozen=True, slots=True)
 class NoseSwung:
-    """swung: sides that it came to. rate_deg_s, lag_deg: as seen."""
+    """swung: sides that it came to; none on a short leg. rate_deg_s, lag_deg: as seen."""
 
     swung: int
     amplitude_deg: float
@@ -43,8 +43,8 @@ class NoseSwung:
     code: Literal["nose_swung"] = "nose_swung"
 
     english: ClassVar[Words] = Words(
-        "The nose swung {swung|time|times} by {amplitude_deg} to either side, at {rate_deg_s} and at most {lag_deg} "
-        "behind{end?near_place=, until the place was near|not_ours=, until another order or another pilot"
+        "The nose swung by {amplitude_deg} to either side, {swung|time|times} to the end, at {rate_deg_s} and at most "
+        "{lag_deg} behind{end?near_place=, until the place was near|not_ours=, until another order or another pilot"
         "|lags=. Then it did not follow, and was left alone"
         "|refused=. Then the autopilot refused, and it was left alone}."
     )

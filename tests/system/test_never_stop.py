@@ -77,7 +77,8 @@ async def test_a_mission_is_localized_without_a_turn_at_every_place(server: Runn
     assert legs
     assert all(leg["stretches"] for leg in legs)
     noses = [why for leg in legs for why in leg["nose"]]
-    assert all(why["swung"] > 0 and why["end"] == "near_place" for why in noses), noses
+    assert all(why["rate_deg_s"] > 20.0 and why["end"] == "near_place" for why in noses), noses
+    assert any(why["swung"] > 0 for why in noses), "on a short leg it comes to no side, but not on every one"
     turned = [one["event"]["reason"] for one in operator.of("phase_changed") if one["event"]["after"] == "measuring"]
     assert turned[0] == {"because": "first", "code": "turns_here"}
 

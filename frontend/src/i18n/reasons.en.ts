@@ -270,7 +270,7 @@ export const reasonsEn: ReasonTable = {
     "Several tags send at this frequency: {given} pulses were told apart; {overlapping} of two tags at once, {unclear} that could be more than one's and {strangers} that fit none count for no tag.",
   ],
   nose_swung: [
-    "The nose swung {swung|time|times} by {amplitude_deg} to either side, at {rate_deg_s} and at most {lag_deg} behind{end?near_place=, until the place was near|not_ours=, until another order or another pilot|lags=. Then it did not follow, and was left alone|refused=. Then the autopilot refused, and it was left alone}.",
+    "The nose swung by {amplitude_deg} to either side, {swung|time|times} to the end, at {rate_deg_s} and at most {lag_deg} behind{end?near_place=, until the place was near|not_ours=, until another order or another pilot|lags=. Then it did not follow, and was left alone|refused=. Then the autopilot refused, and it was left alone}.",
   ],
   readings_left_out: [
     "{readings|reading|readings} left out: {why?heading_unknown=no heading was heard near enough in time|place_unknown=the vehicle was not sure where it was|overdriven=the receiver was overdriven|at_noise=hardly above the noise|beside_a_turn=beside a place where it turns and listens anyway|pointed_one_way=the antenna pointed one way, so their power shows no direction|too_many=other stretches of the way turned further}.",

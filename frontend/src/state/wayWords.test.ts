@@ -16,6 +16,6 @@ it("says what the nose did", () => {
   const swung = { code: "nose_swung", swung: 4, amplitude_deg: 75, rate_deg_s: 24, lag_deg: 12, end: "near_place" } as const;
   expect(noseWords(someLeg())).toEqual([]);
   expect(noseWords(someLeg({ nose: [swung] }))).toEqual([
-    "The nose swung 4 times by 75 degrees to either side, at 24 degrees/s and at most 12 degrees behind, until the place was near.",
+    "The nose swung by 75 degrees to either side, 4 times to the end, at 24 degrees/s and at most 12 degrees behind, until the place was near.",
   ]);
 });

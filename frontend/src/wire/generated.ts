@@ -5784,7 +5784,7 @@ export interface components {
              */
             code: "nonsensical_power";
         };
-        /** @description swung: sides that it came to. rate_deg_s, lag_deg: as seen. */
+        /** @description swung: sides that it came to; none on a short leg. rate_deg_s, lag_deg: as seen. */
         NoseSwung: {
             swung: number;
             amplitude_deg: number;

@@ -20,7 +20,7 @@ export const sweep = {
       "|too_many=andere Abschnitte des Wegs wurden weiter gedreht}.",
   ],
   nose_swung: [
-    "Die Nase pendelte {swung|Mal|Mal} um {amplitude_deg} nach jeder Seite, mit {rate_deg_s} und höchstens {lag_deg} zurück" +
+    "Die Nase pendelte um {amplitude_deg} nach jeder Seite, {swung|Mal|Mal} bis ans Ende, mit {rate_deg_s} und höchstens {lag_deg} zurück" +
       "{end?near_place=, bis der Ort nahe war|not_ours=, bis ein anderer Befehl kam oder jemand anderes flog" +
       "|lags=. Dann folgte sie nicht und wurde in Ruhe gelassen|refused=. Dann lehnte der Autopilot ab, und sie wurde in Ruhe gelassen}.",
   ],
