@@ -30,10 +30,10 @@ from backend.workers import Workers
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import PatternError, parse_pattern
 from hardware.direction_finding.recordings import Recording
-from hardware.direction_finding.table_file import RecordingError
+from hardware.direction_finding.table_file import RecordingError, decoded
 from hardware.reasons.iq_recording import NotIq
 from hardware.reasons.renamed import renamed
-from hardware.reasons.table import FileUnreadable, RemarksNotListed
+from hardware.reasons.table import RemarksNotListed
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.sigmf_names import ARCHIVE, DATA, META, is_sigmf
 from hardware.sdr.spectrum import SpectrumError
@@ -147,10 +147,7 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
 async def _pattern(file: UploadFile, workers: Workers) -> AntennaPattern:
     """Raises MissionInputError."""
     try:
-        text = (await file.read()).decode("utf-8-sig")
-        return await workers.run(parse_pattern, _called(file), text)
-    except UnicodeDecodeError as error:
-        raise MissionInputError(FileUnreadable(_called(file), error.reason), "antenna") from error
+        return await workers.run(parse_pattern, _called(file), decoded(await file.read()))
     except PatternError as error:
         raise MissionInputError(error.reason, "antenna") from error
 

@@ -59,6 +59,9 @@ LEAST_SECTOR_DEG = 80.0
 MAXIMUM_GAP_SIGMA_DEG = 25.0
 """A bearing into a gap is used when what was heard beside the gap says it better than this."""
 MAXIMUM_CLIPPED = 0.05
+MAXIMUM_AT_TOP = 0.6
+"""Of the samples, at the very largest power: a table says nothing of clipping. Where more of the lobe is left, or a
+scale is coarse, sigma holds (tests/benchmarks/foreign_sweeps.py)."""
 HEARD_DB = 3.0
 """Power over the noise, both together, that the strongest direction must have: 3 dB is wave and noise alike."""
 MINIMUM_PEAK_WEIGHT = 0.05
@@ -217,10 +220,10 @@ def _widened(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:
 def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:
     """Why no method can use this sweep; None when it can be used."""
     samples = sweep.power_db.size
-    finite = int((np.abs(sweep.power_db) < IMPLAUSIBLE_DB).sum())
+    plausible = sweep.power_db[np.abs(sweep.power_db) < IMPLAUSIBLE_DB]
     if samples == 0:
         return NothingHeardInTurn()
-    if finite == 0:
+    if plausible.size == 0:
         return PowerNotNumbers()
     if sweep.clipped_samples > MAXIMUM_CLIPPED * samples:
         return Overdriven(sweep.clipped_samples, samples)
@@ -231,6 +234,9 @@ def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:
         return TurnIncomplete(360.0 - binned.largest_gap_deg)
     if np.ptp(binned.power_db[binned.filled]) < 1e-6:
         return ConstantPower()
+    at_top = int((plausible == plausible.max()).sum())
+    if at_top > MAXIMUM_AT_TOP * plausible.size:
+        return Overdriven(at_top, plausible.size)
     return None
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.table_file import LONGEST_CELL, Row, cells_of, commas_in_numbers, number_of
+from hardware.direction_finding.table_file import LONGEST_CELL, Row, cells_of, commas_in_numbers, decoded, number_of
 from hardware.reasons.pattern import (
     AngleTwice,
     ImplausibleGains,
@@ -120,13 +120,9 @@ def parse_pattern(filename: str, text: str) -> AntennaPattern:
 
 def _text_of(path: Path | str) -> str:
     try:
-        return Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise PatternError(FileUnreadable(str(path), _words_of(error))) from error
-
-
-def _words_of(error: OSError | UnicodeDecodeError) -> str:
-    return (error.strerror or str(error)) if isinstance(error, OSError) else error.reason
+        return decoded(Path(path).read_bytes())
+    except OSError as error:
+        raise PatternError(FileUnreadable(str(path), error.strerror or str(error))) from error
 
 
 def _from_json(filename: str, parsed: object) -> AntennaPattern:

@@ -107,7 +107,7 @@ def _unnamed(table: Table, rows: Sequence[Row]) -> Columns:
     if commas_in_numbers(wide):
         raise RecordingError(TooManyCells(str(table.path), wide[0].line, len(wide[0].cells), 2))
     first = [value for row in wide if (value := row.number(0)) is not None]
-    second = [value for row in wide if (value := row.number(1)) is not None]
+    second = [value for row in wide if (value := row.decibels(1)) is not None]
     turned = bool(first) and max(map(abs, first)) <= 360.0 and max(first) - min(first) > HALF_TURN_DEG
     if not (turned and second and max(second) < 0.0):
         raise table.columns_unknown(wide[0], *EXPECTED)

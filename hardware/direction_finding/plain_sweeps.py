@@ -36,7 +36,7 @@ def read_plain(table: Table, tag: str | None) -> tuple[list[tuple[Sweep, bool]],
     columns, rows = columns_of(table)
     heard, remarks = _heard(table, columns, rows)
     file = str(table.path)
-    turns = turns_in(heard, columns)
+    turns = turns_in(heard, columns, rows)
     sweeps = [sweep for turn in turns if (sweep := _sweep(file, turn, columns, tag, remarks)) is not None]
     if not sweeps:
         raise RecordingError(next(remark for remark in remarks if isinstance(remark, TagNotHeard)))
@@ -49,7 +49,7 @@ def _heard(table: Table, columns: Columns, rows: Sequence[Row]) -> tuple[list[He
     remarks: list[TableRemark] = []
     good: list[tuple[Row, float, float]] = []
     for row in rows:
-        heading, power = row.number(columns.heading), row.number(columns.power)
+        heading, power = row.number(columns.heading), row.decibels(columns.power)
         if columns.width is not None and row.numbers_beyond(columns.width):
             remarks.append(RowLeftOut(file, row.line, "wide"))
         elif heading is None or not math.isfinite(heading):

@@ -1,10 +1,13 @@
-"""The turns in a plain table: as a column numbers them, or, where one was made at each place, by place."""
+"""The turns in a plain table: as a column numbers them, or by place, or between blank lines and comments, where each
+part went round."""
 
 from __future__ import annotations
 
 import math
+from bisect import bisect
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -31,11 +34,11 @@ class HeardAt:
     place: Place | None
 
 
-def turns_in(heard: Sequence[HeardAt], columns: Columns) -> list[list[HeardAt]]:
-    """The rows of each turn, in the order in which turns begin; at least one turn of at least one row."""
+def turns_in(heard: Sequence[HeardAt], columns: Columns, rows: Sequence[Row]) -> list[list[HeardAt]]:
+    """The usable ones of the rows of each turn, in the order in which turns begin; at least one of at least one row."""
     numbering = [column for column in columns.turns if _numbers_turns(heard, column)]
     if not numbering:
-        return _by_place(heard) or [list(heard)]
+        return _by_place(heard) or _by_blocks(heard, rows) or [list(heard)]
     turns: dict[tuple[str, ...], list[HeardAt]] = {}
     for one in heard:
         turns.setdefault(tuple(_cell(one, column) for column in numbering), []).append(one)
@@ -71,6 +74,15 @@ def _by_place(heard: Sequence[HeardAt]) -> list[list[HeardAt]] | None:
             turns.append([])
         turns[now].append(one)
     return turns if len(turns) > 1 and all(_turned_deg(turn) >= HALF_TURN_DEG for turn in turns) else None
+
+
+def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row]) -> list[list[HeardAt]] | None:
+    """None unless it went round in each of several blocks of lines."""
+    begins = [after.line for before, after in pairwise(rows) if after.line - before.line > 1]
+    turns: list[list[HeardAt]] = [[] for _ in range(len(begins) + 1)]
+    for one in heard:
+        turns[bisect(begins, one.row.line)].append(one)
+    return turns if begins and all(turn and _turned_deg(turn) >= HALF_TURN_DEG for turn in turns) else None
 
 
 def _turned_deg(turn: Sequence[HeardAt]) -> float:

@@ -1,8 +1,9 @@
 """Text tables from the field: comma, semicolon or tab separated, `#` comments, any line ends, lines numbered; between
-semicolons or tabs a decimal comma, as spreadsheets write it in half of the world."""
+semicolons or tabs a decimal comma, as spreadsheets write it in half of the world. Numbers may carry their unit."""
 
 from __future__ import annotations
 
+import codecs
 import csv
 import re
 from collections.abc import Iterable, Sequence
@@ -16,6 +17,10 @@ from planner.reason import ReasonedError
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
 _BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
 _WHOLE = re.compile(r"[+-]?\d+")
+_DEGREES = re.compile(r"(?<=[\d.])\s*(?:°|deg|degrees)$", re.IGNORECASE)
+_DECIBELS = re.compile(r"(?<=[\d.])\s*dB(?:m|W|FS)?$", re.IGNORECASE)
+_MINUS = str.maketrans("\u2212\u2013", "--")
+"""As typesetters write it."""
 
 LARGEST = 1e100
 """Of any number: its square is finite, too."""
@@ -44,8 +49,16 @@ class Row:
     cells: tuple[str, ...]
 
     def number(self, column: int) -> float | None:
-        """The cell as a float, None when it is missing, empty, no number or one that cannot be reckoned with."""
-        number = number_of(self.cells[column]) if column < len(self.cells) else None
+        """The cell as a float, None when it is missing, empty, no number (of degrees, if it has a unit) or one that
+        cannot be reckoned with."""
+        return self._float(column, _DEGREES)
+
+    def decibels(self, column: int) -> float | None:
+        """The same of a number that is one of decibels, if it has a unit."""
+        return self._float(column, _DECIBELS)
+
+    def _float(self, column: int, unit: re.Pattern[str]) -> float | None:
+        number = _float(unit.sub("", self.cells[column])) if column < len(self.cells) else None
         return None if number is None or abs(number) > LARGEST else number
 
     def numbers_beyond(self, width: int) -> bool:
@@ -78,12 +91,9 @@ def read_table(path: Path | str) -> Table:
         raw = path.read_bytes()
     except OSError as error:
         raise RecordingError(FileUnreadable(str(path), error.strerror or str(error))) from error
-    if b"\0" in raw[:4096]:
+    text = decoded(raw)
+    if "\0" in text[:4096]:
         raise RecordingError(FileUnusable(str(path), "not_text"))
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
     rows: list[Row] = []
     comments: list[Row] = []
     for number, line in enumerate(text.splitlines(), start=1):
@@ -100,10 +110,30 @@ def read_table(path: Path | str) -> Table:
     return Table(path, tuple(rows), tuple(comments))
 
 
-def number_of(cell: str) -> float | None:
-    """The cell as a float, with a decimal point or a decimal comma; None when it is no number."""
+def decoded(raw: bytes) -> str:
+    """A file's text: UTF-16 where it says so, as spreadsheets export it; UTF-8 or, failing that, Latin-1."""
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return raw.decode("utf-16", errors="replace")
     try:
-        return float(cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell)
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def number_of(cell: str) -> float | None:
+    """The cell as a float, with a decimal point or a decimal comma, with or without degrees or decibels behind it; None
+    when it is no number."""
+    return _float(_bare(cell))
+
+
+def _bare(cell: str) -> str:
+    return _DECIBELS.sub("", _DEGREES.sub("", cell)).translate(_MINUS)
+
+
+def _float(cell: str) -> float | None:
+    plain = cell.translate(_MINUS)
+    try:
+        return float(plain.replace(",", ".") if _DECIMAL_COMMA.fullmatch(plain) else plain)
     except ValueError:
         return None
 
@@ -112,7 +142,7 @@ def cells_of(line: str) -> tuple[str, ...]:
     """Split at semicolons or tabs when every comma between them is a decimal one, at commas else."""
     for delimiter in (";", "\t"):
         cells = _split(line, delimiter)
-        if len(cells) > 1 and all("," not in cell or _DECIMAL_COMMA.fullmatch(cell) for cell in cells):
+        if len(cells) > 1 and all("," not in cell or _DECIMAL_COMMA.fullmatch(_bare(cell)) for cell in cells):
             return cells
     return _split(line, ",")
 

@@ -134,8 +134,8 @@ def read_rotations(table: Table, tag: str | None = None) -> tuple[list[tuple[Swe
     sweeps = [_sweep(table, rotation, tag, remarks) for rotation in rotations]
     found = [sweep for sweep in sweeps if sweep is not None]
     if not found:
-        first = next((remark for remark in remarks if isinstance(remark, TagNotHeard)), remarks[0])
-        raise RecordingError(NothingUsable(file, "pulse", first))
+        unheard = next((remark for remark in remarks if isinstance(remark, TagNotHeard)), None)
+        raise RecordingError(unheard or NothingUsable(file, "pulse", remarks[0]))
     return found, remarks
 
 

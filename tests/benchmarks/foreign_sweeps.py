@@ -77,13 +77,15 @@ ANTENNAS: Mapping[str, Array] = {
 @dataclass(frozen=True, slots=True)
 class Heard:
     """fade_db, over_deg: of the wave. drift_db: from the turn's begin to its end. slope: of the receiver's scale.
-    step_db: it rounds to. echo_db: a reflector's wave under the direct one; None: none."""
+    step_db: it rounds to. clipped_db: cut off the loudest. echo_db: a reflector's wave under the direct
+    one; None: none."""
 
     fade_db: float = 1.0
     over_deg: float = 10.0
     drift_db: float = 0.0
     slope: float = 1.0
     step_db: float = 0.0
+    clipped_db: float = 0.0
     echo_db: float | None = None
     readings: int = 60
 
@@ -92,6 +94,8 @@ DISTURBED: Mapping[str, Heard] = {
     "rounded to 3 dB": Heard(step_db=3.0),
     "rounded to 6 dB": Heard(step_db=6.0),
     "half a dB for one": Heard(slope=0.5),
+    "clipped by 4 dB": Heard(clipped_db=4.0),
+    "clipped by 8 dB": Heard(clipped_db=8.0),
     "fading, 2 dB over 30 degrees": Heard(fade_db=2.0, over_deg=30.0),
     "fading, 4 dB over 30 degrees": Heard(fade_db=4.0, over_deg=30.0),
     "fading, 4 dB over 5 degrees": Heard(fade_db=4.0, over_deg=5.0),
@@ -131,6 +135,7 @@ def sweep_of(antenna: str, heard: Heard, truth_deg: float, rng: np.random.Genera
     power += heard.fade_db * rng.multivariate_normal(np.zeros(turned.size), alike, method="eigh")
     power += heard.drift_db * (turned / TURN_DEG - 0.5) * rng.choice([-1.0, 1.0])
     power = heard.slope * power + rng.normal(0.0, 0.5, turned.size)
+    power = np.minimum(power, power.max() - heard.clipped_db)
     if heard.step_db:
         power = heard.step_db * np.round(power / heard.step_db)
     return Sweep(turned / 30.0, heading % 360.0, power - 60.0, 150e6, Place(0.0, 0.0), 0.0)

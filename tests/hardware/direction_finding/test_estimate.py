@@ -141,6 +141,7 @@ FULL = np.arange(0.0, 360.0, 1.5)
         (sweep_of(np.empty(0), np.empty(0)), NothingHeardInTurn()),
         (sweep_of(FULL, np.full(FULL.size, np.nan)), PowerNotNumbers()),
         (sweep_of(FULL, heard(YAGI, 10.0, FULL), clipped_samples=60), Overdriven(60, 240)),
+        (sweep_of(FULL, np.minimum(heard(YAGI, 10.0, FULL), -75.0)), Overdriven(155, 240)),
         (sweep_of(FULL[:4], heard(YAGI, 10.0, FULL[:4])), TooFewDirections(3, 8)),
         (sweep_of(FULL[:150], heard(YAGI, 10.0, FULL[:150])), TurnIncomplete(223.5)),
         (sweep_of(FULL, np.full(FULL.size, -70.0)), ConstantPower()),
@@ -153,6 +154,12 @@ def test_unusable_sweeps_are_rejected_with_a_reason(sweep: Sweep, reason: Reason
     assert not reading.accepted
     assert isinstance(reading.reason, reason) if isinstance(reason, type) else reading.reason == reason
     assert np.isfinite([reading.bearing_deg, reading.sigma_deg, reading.quality]).all()
+
+
+def test_a_lobe_that_is_cut_off_half_way_is_used() -> None:
+    reading = FINDER.estimate(sweep_of(FULL, np.minimum(heard(YAGI, 10.0, FULL), -72.0)), YAGI)
+    assert reading.accepted
+    assert abs(error_deg(reading.bearing_deg, 10.0)) < 2.0 * reading.sigma_deg < 60.0
 
 
 def test_bearing_that_an_unheard_arc_hides_is_rejected() -> None:

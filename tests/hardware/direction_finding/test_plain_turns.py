@@ -69,3 +69,20 @@ def test_a_vehicle_that_drifts_as_it_hovers_is_not_remarked(tmp_path: Path) -> N
     rows = [f"{50.0 + heading / 4e6:.7f},7.0,{heading},-60" for heading in TURN]
     recording = read(tmp_path, "lat,lon,heading_deg,power_db", rows)
     assert (len(recording.sweeps), recording.remarks) == (1, ())
+
+
+@pytest.mark.parametrize("between", ["", "# second turn", " ;"])
+def test_turns_with_a_blank_line_or_a_comment_between_are_a_sweep_each(tmp_path: Path, between: str) -> None:
+    rows = [*turn("B", 100), between, *turn("A", 250)]
+    recording = read(tmp_path, "id,heading_deg,power_db", rows)
+    assert [recorded.sweep.heading_deg[recorded.sweep.power_db.argmax()] for recorded in recording.sweeps] == [100, 250]
+
+
+def test_blank_lines_within_one_turn_part_nothing(tmp_path: Path) -> None:
+    rows = [line for row in turn("A", 100) for line in (row, "")]
+    assert [one.sweep.power_db.size for one in read(tmp_path, "id,heading_deg,power_db", rows).sweeps] == [36]
+
+
+def test_a_row_left_out_parts_no_turn(tmp_path: Path) -> None:
+    rows = [*turn("A", 100), "A,0,", *turn("A", 250)]
+    assert [one.sweep.power_db.size for one in read(tmp_path, "id,heading_deg,power_db", rows).sweeps] == [72]

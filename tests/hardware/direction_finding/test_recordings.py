@@ -17,7 +17,6 @@ from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.reasons.table import (
     CellUnusable,
-    NothingUsable,
     OtherTagsLeftOut,
     PulsesOutsideRotations,
     Quantity,
@@ -123,7 +122,7 @@ def test_several_rotations_and_tags_give_one_sweep_each_of_the_commonest_tag(tmp
         OtherTagsLeftOut(str(path), 1, "4", 1, ("2",)),
     )
     assert [recorded.sweep.tag for recorded in read_recording(path, tag="2").sweeps] == ["2"]
-    with refusing(NothingUsable(str(path), "pulse", TagNotHeard(str(path), 1, "77", ("2", "4"))), RecordingError):
+    with refusing(TagNotHeard(str(path), 1, "77", ("2", "4")), RecordingError):
         read_recording(path, tag="77")
 
 

@@ -1,0 +1,67 @@
+"""Numbers as people, spreadsheets and typesetters write them; a unit that cannot be meant is no number."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from refusals import refusing
+
+from hardware.direction_finding.pattern_file import load_pattern
+from hardware.direction_finding.recordings import read_recording
+from hardware.direction_finding.table_file import RecordingError, read_table
+from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity
+
+TURN = "heading_deg,power_db\n" + "\n".join(f"{heading},{-60 - heading / 20}" for heading in range(0, 360, 10))
+
+
+@pytest.mark.parametrize(
+    ("heading", "power"),
+    [
+        ("12.5°", "-70.5 dBm"),
+        ("12.5 deg", "-70.5dB"),
+        ("12.5 degrees", "-70.5 DBFS"),
+        ("12.5\u00a0°", "\u221270.5"),
+        ("12,5°", "\u201370,5 dBm"),
+    ],
+)
+def test_degrees_and_decibels_may_stand_behind_their_numbers(tmp_path: Path, heading: str, power: str) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_text(f"heading;power\n{heading};{power}\n", encoding="utf-8")
+    (recorded,) = read_recording(path).sweeps
+    assert (recorded.sweep.heading_deg.tolist(), recorded.sweep.power_db.tolist()) == ([12.5], [-70.5])
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "cell", "quantity"),
+    [
+        ("-70 dBm,12°", 1, "-70 dBm", "heading"),
+        ("12,-70°", 2, "-70°", "power"),
+        ("12,3 mW", 2, "3 mW", "power"),
+        ("12 m,-70", 1, "12 m", "heading"),
+    ],
+)
+def test_a_unit_of_another_quantity_is_refused(
+    tmp_path: Path, row: str, column: int, cell: str, quantity: Quantity
+) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_text(f"heading_deg,power_db\n{row}\n", encoding="utf-8")
+    unusable = CellUnusable(str(path), 2, column, cell, quantity)
+    with refusing(NothingUsable(str(path), "power", unusable), RecordingError):
+        read_recording(path)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_spreadsheets_save_unicode_in_several_ways(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_bytes(TURN.encode(encoding))
+    (recorded,) = read_recording(path).sweeps
+    assert recorded.sweep.power_db.size == 36
+    assert load_pattern(path).gain_db.size == 36
+
+
+def test_zeros_are_no_text_in_any_encoding(tmp_path: Path) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_bytes(TURN.encode("utf-16-le"))
+    with refusing(FileUnusable(str(path), "not_text"), RecordingError):
+        read_table(path)
