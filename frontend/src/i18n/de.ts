@@ -384,7 +384,7 @@ export const de: Record<MessageKey, string> = {
   "antenna.listening": "Hört: jetzt das Fluggerät drehen …",
   "antenna.bad": "Eine Peilung wie 120 oder einen Ort wie 50.6123, 7.2046 angeben.",
   "event.bearings_imported": "{name} eingelesen von {by}",
-  "event.recording_imported": "{name} eingelesen von {by} ({count} Drehungen)",
+  "event.recording_imported": "{name} eingelesen von {by} (Drehungen: {count})",
   "sweep.plotEmpty": "Empfangsleistung über der Richtung: nichts gemessen",
 
   "plan.title": "Nächster Ort",

@@ -242,7 +242,7 @@ export const en = {
   "antenna.listening": "Listening: turn the vehicle …",
   "antenna.bad": "Write a bearing like 120, or a place like 50.6123, 7.2046.",
   "event.bearings_imported": "{name} imported by {by}",
-  "event.recording_imported": "{name} imported by {by} ({count} sweeps)",
+  "event.recording_imported": "{name} imported by {by} (sweeps: {count})",
   "sweep.plotEmpty": "Received power against heading: nothing measured",
 
   "plan.title": "Next place",
