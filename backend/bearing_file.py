@@ -18,10 +18,11 @@ EPOCH_MS = 1e3 * EARLIEST_S
 def read_bearing_file(path: Path, tag: str | None) -> Recording | None:
     """None for a file of something else. tag: whose bearings, in a file of several. Raises RecordingError."""
     table = read_table(path)
-    if is_uavrt(table):
+    if is_uavrt(table) and not holds_bearings(table):
         return None
-    if _is_kraken(table.rows[0]):
-        return _kraken(table)
+    kraken = kraken_in(table)
+    if kraken is not None:
+        return kraken
     if not holds_bearings(table):
         return None
     found = read_bearings(path)
@@ -32,12 +33,12 @@ def read_bearing_file(path: Path, tag: str | None) -> Recording | None:
     return Recording((), found.remarks, chosen)
 
 
-def _is_kraken(row: Row) -> bool:
-    return len(row.cells) >= FEWEST_COLUMNS and (row.number(0) or 0.0) > EPOCH_MS
-
-
-def _kraken(table: Table) -> Recording:
-    """Of the bearings that a station took standing still, one a minute, as of those that it sends itself."""
+def kraken_in(table: Table) -> Recording | None:
+    """Of the bearings that a KrakenSDR took standing still, one a minute, as of those that it sends itself; None for
+    another file. Raises RecordingError."""
+    first = table.rows[0]
+    if len(first.cells) < FEWEST_COLUMNS or (first.number(0) or 0.0) <= EPOCH_MS:
+        return None
     kept: dict[str, RecordedBearing] = {}
     remarks: list[CellUnusable] = []
     for row in table.rows:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from statistics import median
 
 import numpy as np
 import pymap3d
 from numpy.typing import NDArray
 
 from hardware.readings import Place
+
+Average = Callable[[Sequence[float]], float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,12 @@ class LocalFrame:
         east, north = points[:, 0], points[:, 1]
         lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat, self.origin.lon, 0.0)
         return list(zip(lon.tolist(), lat.tolist(), strict=True))
+
+
+def middle_of(lat_deg: Sequence[float], lon_deg: Sequence[float], average: Average = median) -> Place:
+    """Of places near one another, on either side of the dateline, too."""
+    lon = average(np.unwrap(lon_deg, period=360.0).tolist())
+    return Place(average(lat_deg), lon if -180.0 <= lon <= 180.0 else math.remainder(lon, 360.0))
 
 
 def compass_to_angle(bearing_deg: float) -> float:

@@ -6,20 +6,22 @@ import json
 import math
 from dataclasses import fields, replace
 from pathlib import Path
+from statistics import fmean
 from typing import Annotated, Any, get_args
 
 import numpy as np
 import typer
 
+from backend.bearing_file import kraken_in
 from backend.cli.edge import print_json, remark, stop
 from backend.search.reported import compass_share_deg
 from backend.search.source_priors import LEAST_OUTLIERS, unknown_errors
 from backend.settings import settings_of
 from backend.spec import ErrorModel
 from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
-from hardware.direction_finding.bearings_file import RecordedBearing, read_bearings
-from hardware.direction_finding.table_file import RecordingError
-from hardware.frame import LocalFrame, compass_to_angle
+from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
+from hardware.direction_finding.table_file import RecordingError, read_table
+from hardware.frame import LocalFrame, compass_to_angle, middle_of
 from hardware.readings import Place
 from hardware.reasons.table import FileUnreadable
 from planner.belief.estimate import confidence_region, estimate
@@ -113,10 +115,12 @@ def localize(
     Example: crossfix localize bearings.csv --range 800 --json
     """
     try:
-        recorded = read_bearings(file) if sigma is None else read_bearings(file, sigma)
+        kraken = kraken_in(read_table(file))
+        recorded = kraken or read_bearings(file, sigma or DEFAULT_SIGMA_DEG)
         for reason in recorded.remarks:
             remark(sentence_of(reason))
-        chosen = _of_tag(file, recorded.bearings, tag)
+        whole = kraken is not None and tag is None  # of several stations
+        chosen = list(recorded.bearings) if whole else _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
         joint = _joint(errors)
@@ -172,7 +176,7 @@ def _with_sigma(bearings: list[RecordedBearing], sigma_deg: float) -> list[Recor
 
 
 def _middle(bearings: list[RecordedBearing]) -> Place:
-    return Place(float(np.mean([b.place.lat for b in bearings])), float(np.mean([b.place.lon for b in bearings])))
+    return middle_of([b.place.lat for b in bearings], [b.place.lon for b in bearings], fmean)
 
 
 def _audible(bearings: list[RecordedBearing], frame: LocalFrame, range_m: float | None) -> Region:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
+from hardware.direction_finding.uavrt import is_uavrt
 from hardware.readings import Place
-from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity
+from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity, RowLeftOut, TooManyCells
 
 DEFAULT_SIGMA_DEG = 7.0
 """The field system's (spec section 8), for bearings whose file states none."""
@@ -47,17 +48,20 @@ class RecordedBearings:
     """bearings: in file order. remarks: what was left out and why."""
 
     bearings: tuple[RecordedBearing, ...]
-    remarks: tuple[CellUnusable, ...]
+    remarks: tuple[CellUnusable | RowLeftOut, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Columns:
+    """Indices from 0. width: how many there are, None: as many as a row likes."""
+
     lat: int
     lon: int
     bearing: int
     sigma: int | None
     tag: int | None
     at: int | None = None
+    width: int | None = None
 
 
 def holds_bearings(table: Table) -> bool:
@@ -76,20 +80,37 @@ def holds_bearings(table: Table) -> bool:
 def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
     """Read a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
     table = read_table(path)
+    if not holds_bearings(table) and (is_uavrt(table) or _names(table, POWER)):
+        raise RecordingError(FileUnusable(str(table.path), "sweeps"))
     columns, rows = _columns(table)
     if not rows:
         raise RecordingError(FileUnusable(str(table.path), "empty"))
     bearings: list[RecordedBearing] = []
-    remarks: list[CellUnusable] = []
+    remarks: list[CellUnusable | RowLeftOut] = []
     for row in rows:
+        if columns.width is not None and row.numbers_beyond(columns.width):
+            remarks.append(RowLeftOut(str(table.path), row.line, "wide"))
+            continue
         bearing = _bearing(table, row, columns, sigma_deg)
         if isinstance(bearing, CellUnusable):
             remarks.append(bearing)
         else:
             bearings.append(bearing)
     if not bearings:
-        raise RecordingError(NothingUsable(str(table.path), "bearing", remarks[0]))
+        raise RecordingError(_nothing(table, columns, rows, remarks[0]))
     return RecordedBearings(tuple(bearings), tuple(remarks))
+
+
+def _names(table: Table, names: tuple[str, ...]) -> bool:
+    return any(column_of(row.cells, *names) is not None for row in (table.rows[0], *table.comments))
+
+
+def _nothing(
+    table: Table, columns: _Columns, rows: tuple[Row, ...], first: CellUnusable | RowLeftOut
+) -> TooManyCells | NothingUsable:
+    if isinstance(first, RowLeftOut) and columns.width is not None:
+        return TooManyCells(str(table.path), rows[0].line, len(rows[0].cells), columns.width)
+    return NothingUsable(str(table.path), "bearing", first)
 
 
 def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
@@ -100,21 +121,30 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
         places = [column_of(header.cells, *names) for names in (_LAT, _LON, _BEARING)]
         if places[0] is None or places[1] is None or places[2] is None:
             raise table.columns_unknown(header, *EXPECTED)
-        columns = _Columns(
-            places[0],
-            places[1],
-            places[2],
-            column_of(header.cells, *_SIGMA),
-            column_of(header.cells, "tag", "tag_id", "tagid"),
-        )
+        sigma, tag = column_of(header.cells, *_SIGMA), column_of(header.cells, "tag", "tag_id", "tagid")
+        last = max(k for k, name in enumerate(header.cells) if name)
+        width = last + 1 if last in (*places, sigma, tag) else None  # else a note, which may hold anything
+        columns = _Columns(places[0], places[1], places[2], sigma, tag, width=width)
         return columns, table.rows[1:] if header is first else table.rows
     if len(first.cells) == 10:
         return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0, at=9), table.rows
     if len(first.cells) in (3, 4):
-        if first.number(0) is None:
+        if first.number(0) is None or _unlike_sigmas(table) or _counts_rows(table):
             raise table.columns_unknown(first, *EXPECTED)
         return _Columns(lat=0, lon=1, bearing=2, sigma=3, tag=None), table.rows
     raise table.columns_unknown(first, *EXPECTED)
+
+
+def _counts_rows(table: Table) -> bool:
+    """Whether the first of four columns numbers the rows."""
+    first = [row.number(0) for row in table.rows]
+    return len(table.rows[0].cells) == 4 and first in ([*range(len(first))], [*range(1, 1 + len(first))])
+
+
+def _unlike_sigmas(table: Table) -> bool:
+    """Whether the fourth column holds no degrees: nobody takes bearings to less than one, and shares are so small."""
+    fourth = [sigma for row in table.rows if (sigma := row.number(3)) is not None]
+    return len(table.rows[0].cells) == 4 and bool(fourth) and 0.0 < min(fourth) <= max(fourth) <= 1.0
 
 
 def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float) -> RecordedBearing | CellUnusable:

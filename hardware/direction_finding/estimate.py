@@ -60,8 +60,10 @@ MAXIMUM_GAP_SIGMA_DEG = 25.0
 """A bearing into a gap is used when what was heard beside the gap says it better than this."""
 MAXIMUM_CLIPPED = 0.05
 MAXIMUM_AT_TOP = 0.6
-"""Of the samples, at the very largest power: a table says nothing of clipping. Where more of the lobe is left, or a
+"""Of the directions, at the very largest power: a table says nothing of clipping. Where more of the lobe is left, or a
 scale is coarse, sigma holds (tests/benchmarks/foreign_sweeps.py)."""
+FLAT_DB = 1.0
+"""Within this of its largest gain an antenna may be as flat as a receiver's coarse scale shows it."""
 HEARD_DB = 3.0
 """Power over the noise, both together, that the strongest direction must have: 3 dB is wave and noise alike."""
 MINIMUM_PEAK_WEIGHT = 0.05
@@ -110,7 +112,7 @@ class SparseDirectionFinder:
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         """Bearing, sigma and quality of one sweep; one that cannot be used comes back not accepted, with the reason."""
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
-        refusal = unusable(sweep, binned)
+        refusal = unusable(sweep, binned) or cut_off(binned, pattern)
         if refusal is not None:
             return refused(binned, refusal)
         prepared = self._prepare(pattern)
@@ -234,10 +236,18 @@ def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:
         return TurnIncomplete(360.0 - binned.largest_gap_deg)
     if np.ptp(binned.power_db[binned.filled]) < 1e-6:
         return ConstantPower()
-    at_top = int((plausible == plausible.max()).sum())
-    if at_top > MAXIMUM_AT_TOP * plausible.size:
-        return Overdriven(at_top, plausible.size)
     return None
+
+
+def cut_off(binned: BinnedSweep, pattern: AntennaPattern) -> Overdriven | None:
+    """Where so many directions were heard at the very largest power that too little of the lobe is left."""
+    level, count = binned.power_db[binned.filled], binned.count[binned.filled]
+    at_top = level >= level.max() - 1e-9
+    gain_db = pattern.gain_at(np.arange(360.0))
+    flat = float((gain_db > gain_db.max() - FLAT_DB).sum()) / gain_db.size
+    if at_top.mean() <= max(MAXIMUM_AT_TOP, flat + 0.2):
+        return None
+    return Overdriven(int(count[at_top].sum()), int(count.sum()))
 
 
 def linear_power(binned: BinnedSweep, noise_db: float | None) -> NDArray[np.float64]:

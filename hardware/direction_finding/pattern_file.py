@@ -22,7 +22,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.table_file import LONGEST_CELL, Row, cells_of, commas_in_numbers, decoded, number_of
+from hardware.direction_finding.table_file import (
+    LONGEST_CELL,
+    Row,
+    cells_of,
+    commas_in_numbers,
+    decoded,
+    number_of,
+    plain_name,
+)
 from hardware.reasons.pattern import (
     AngleTwice,
     ImplausibleGains,
@@ -215,7 +223,10 @@ def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -
     if not rows:
         raise PatternError(NotAPattern(filename, "rows"))
     _refuse_commas(filename, header, rows)
+    _refuse_units(filename, header)
     table = np.array([(number_of(row.cells[0]), number_of(row.cells[1])) for row in rows], dtype=np.float64)
+    if not np.isfinite(table[:, 0]).all():
+        raise PatternError(NotAPattern(Path(filename).stem, "numbers"))
     gain = _to_db(filename, table[:, 1], unit)
     angle, member = np.unique(np.round(table[:, 0] % 360.0, 6), return_inverse=True)
     mean = np.bincount(member, gain) / np.bincount(member)
@@ -229,6 +240,15 @@ def _turntable_cells(line: str) -> tuple[str, ...]:
         return between_blanks
     cells = cells_of(line or " ")
     return cells if len(cells) > 1 else between_blanks
+
+
+def _refuse_units(filename: str, header: Row | None) -> None:
+    """Raises PatternError where the header names other units than degrees and decibels of gain."""
+    angle, gain = (set(plain_name(name).split("_")) for name in (*(header.cells if header else ()), "", "")[:2])
+    if angle & {"rad", "radians", "gon", "grad"}:
+        raise PatternError(NotAPattern(filename, "rows"))
+    if header and gain & {"linear", "lin", "ratio", "mw", "w", "v", "attenuation", "loss"}:
+        raise PatternError(PatternUnitUnknown(filename, header.cells[1]))
 
 
 def _refuse_commas(filename: str, header: Row | None, rows: list[Row]) -> None:

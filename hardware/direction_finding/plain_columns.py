@@ -62,6 +62,16 @@ def columns_of(table: Table) -> tuple[Columns, tuple[Row, ...]]:
     return columns, rows
 
 
+def is_plain(table: Table) -> bool:
+    """Whether a header names heading and power, and not what every table of UAV-RT's names."""
+    return any(
+        column_of(row.cells, *HEADING, *RADIANS) is not None
+        and column_of(row.cells, *POWER, *LINEAR) is not None
+        and column_of(row.cells, "detection_status", "detect_status") is None
+        for row in (table.rows[0], *table.comments)
+    )
+
+
 def _header(table: Table) -> tuple[Row | None, tuple[Row, ...]]:
     """The header row (a first line, or a comment, whose cells name a heading column) and the data rows."""
     first = table.rows[0]
@@ -75,7 +85,7 @@ def _named(table: Table, header: Row) -> Columns:
     names = header.cells
     heading = column_of(names, *HEADING, *RADIANS)
     power = column_of(names, *POWER, *LINEAR)
-    if heading is None or power is None:
+    if heading is None or power is None or [*map(plain_name, names)].count(plain_name(names[power])) > 1:
         raise table.columns_unknown(header, *EXPECTED)
     turns = [column_of(names, name) for name in TURNS]
     return Columns(
@@ -109,6 +119,7 @@ def _unnamed(table: Table, rows: Sequence[Row]) -> Columns:
     first = [value for row in wide if (value := row.number(0)) is not None]
     second = [value for row in wide if (value := row.decibels(1)) is not None]
     turned = bool(first) and max(map(abs, first)) <= 360.0 and max(first) - min(first) > HALF_TURN_DEG
-    if not (turned and second and max(second) < 0.0):
+    third = [value for row in wide if (value := row.decibels(2)) is not None]
+    if not (turned and second and max(second) < 0.0 and third and max(third) >= 0.0):
         raise table.columns_unknown(wide[0], *EXPECTED)
     return Columns(0, 1, None)

@@ -1,5 +1,5 @@
-"""The turns in a plain table: as a column numbers them, or by place, or between blank lines and comments, where each
-part went round."""
+"""The turns in a plain table: as a column numbers them, or by place, or between blank lines, comments and repeated
+headers, where several parts went round."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from hardware.direction_finding.plain_columns import HALF_TURN_DEG, Columns
-from hardware.direction_finding.table_file import Row
-from hardware.frame import LocalFrame
+from hardware.direction_finding.plain_columns import HALF_TURN_DEG, HEADING, Columns
+from hardware.direction_finding.table_file import Row, column_of
+from hardware.frame import LocalFrame, middle_of
 from hardware.readings import Place
 
 ELSEWHERE_M = 20.0
 """A hovering vehicle stays nearer to where its turn began."""
+ROUND_DEG = 240.0
+"""Of the circle in a block of lines that is a turn of its own: a finder uses no less of a whole turn."""
 MOST_PLACES = 200
 """Of a table with more the rows were taken on the way."""
 
@@ -77,12 +79,18 @@ def _by_place(heard: Sequence[HeardAt]) -> list[list[HeardAt]] | None:
 
 
 def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row]) -> list[list[HeardAt]] | None:
-    """None unless it went round in each of several blocks of lines."""
-    begins = [after.line for before, after in pairwise(rows) if after.line - before.line > 1]
+    """None unless it went round in several blocks of lines."""
+    begins = [after.line for before, after in pairwise(rows) if after.line - before.line > 1 or _is_header(after)]
     turns: list[list[HeardAt]] = [[] for _ in range(len(begins) + 1)]
     for one in heard:
         turns[bisect(begins, one.row.line)].append(one)
-    return turns if begins and all(turn and _turned_deg(turn) >= HALF_TURN_DEG for turn in turns) else None
+    if sum(len(turn) > 1 and _turned_deg(turn) >= ROUND_DEG for turn in turns) < 2:
+        return None
+    return [turn for turn in turns if turn]
+
+
+def _is_header(row: Row) -> bool:
+    return column_of(row.cells, *HEADING) is not None
 
 
 def _turned_deg(turn: Sequence[HeardAt]) -> float:
@@ -96,6 +104,5 @@ def place_of(turn: Sequence[HeardAt]) -> tuple[Place, float] | None:
     places = np.array([(one.place.lon, one.place.lat) for one in turn if one.place is not None])
     if not places.size:
         return None
-    lon, lat = np.median(places, axis=0)
-    middle = Place(float(lat), float(lon))
+    middle = middle_of(places[:, 1].tolist(), places[:, 0].tolist())
     return middle, float(np.max(np.hypot(*LocalFrame(middle).to_enu_points(places).T)))

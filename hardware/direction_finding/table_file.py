@@ -17,8 +17,10 @@ from planner.reason import ReasonedError
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
 _BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
 _WHOLE = re.compile(r"[+-]?\d+")
-_DEGREES = re.compile(r"(?<=[\d.])\s*(?:°|deg|degrees)$", re.IGNORECASE)
-_DECIBELS = re.compile(r"(?<=[\d.])\s*dB(?:m|W|FS)?$", re.IGNORECASE)
+_DEGREES = re.compile(r"(?<=[\d.])\s*(?:Â?[°º]|deg|degrees|Grad)$", re.IGNORECASE)
+_DECIBELS = re.compile(r"(?<=[\d.])\s*dB(?:m|W|FS|i|d|[µu]V)?$", re.IGNORECASE)
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+_LINE_ENDS = re.compile(r"\r\n|\r|\n")
 _MINUS = str.maketrans("\u2212\u2013", "--")
 """As typesetters write it."""
 
@@ -96,18 +98,30 @@ def read_table(path: Path | str) -> Table:
         raise RecordingError(FileUnusable(str(path), "not_text"))
     rows: list[Row] = []
     comments: list[Row] = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        stripped = line.strip()
+    for number, line in enumerate(_LINE_ENDS.split(text), start=1):
+        stripped = line.strip(" ")
         try:
-            if stripped.startswith("#"):
-                comments.append(Row(number, cells_of(stripped.lstrip("#"))))
-            elif stripped.strip(",;"):
+            if line.lstrip().startswith("#"):
+                comments.append(Row(number, cells_of(stripped.lstrip().lstrip("#"))))
+            elif line.strip().strip(",;"):
                 rows.append(Row(number, cells_of(stripped)))
         except csv.Error as error:  # a cell of more than 128 kB, for one
             raise RecordingError(FileUnusable(str(path), "not_text")) from error
     if not rows:
         raise RecordingError(FileUnusable(str(path), "empty"))
+    if 2 * sum(_between_blanks(row) is not None for row in rows) > len(rows):
+        rows, comments = ([Row(row.line, _words(row)) for row in some] for some in (rows, comments))
     return Table(path, tuple(rows), tuple(comments))
+
+
+def _between_blanks(row: Row) -> tuple[str, ...] | None:
+    """Of a row in which nothing else separates numbers."""
+    cells = _words(row)
+    return cells if len(row.cells) == 1 < len(cells) and all(number_of(cell) is not None for cell in cells) else None
+
+
+def _words(row: Row) -> tuple[str, ...]:
+    return tuple(row.cells[0].split()) if len(row.cells) == 1 else row.cells
 
 
 def decoded(raw: bytes) -> str:
@@ -139,12 +153,18 @@ def _float(cell: str) -> float | None:
 
 
 def cells_of(line: str) -> tuple[str, ...]:
-    """Split at semicolons or tabs when every comma between them is a decimal one, at commas else."""
+    """Split at semicolons or tabs when every comma between them is a decimal one, or a note's, at commas else."""
     for delimiter in (";", "\t"):
         cells = _split(line, delimiter)
-        if len(cells) > 1 and all("," not in cell or _DECIMAL_COMMA.fullmatch(_bare(cell)) for cell in cells):
+        whole = ["," not in cell or _DECIMAL_COMMA.fullmatch(_bare(cell)) is not None for cell in cells]
+        notes = [cell for cell, is_whole in zip(cells, whole, strict=True) if not is_whole]
+        if len(cells) > 1 and all(whole[:2]) and all(map(_is_note, notes)):
             return cells
     return _split(line, ",")
+
+
+def _is_note(cell: str) -> bool:
+    return any(letter.isalpha() for letter in cell)
 
 
 def commas_in_numbers(rows: Sequence[Row]) -> bool:
@@ -157,7 +177,8 @@ def commas_in_numbers(rows: Sequence[Row]) -> bool:
 
 
 def _split(line: str, delimiter: str) -> tuple[str, ...]:
-    return tuple(cell.strip().strip("'\"") for cell in next(csv.reader([line], delimiter=delimiter)))
+    cells = next(csv.reader([line], delimiter=delimiter))
+    return tuple(_CONTROL.sub("", cell.strip().strip("'\"")) for cell in cells)
 
 
 def some_of(names: Iterable[str]) -> tuple[str, ...]:

@@ -21,7 +21,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hardware.direction_finding.plain_columns import is_plain
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, some_of
+from hardware.frame import middle_of
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import (
     CellUnusable,
@@ -86,7 +88,10 @@ class _Rotation:
 
 
 def is_uavrt(table: Table) -> bool:
-    """Whether the table's rows are UAV-RT commands: a table of headings has a 7, 10 and 11 among others."""
+    """Whether the table's rows are UAV-RT commands: a table of headings has a 7, 10 and 11 among others. A header that
+    names other columns decides."""
+    if is_plain(table):
+        return False
     commands = sum(row.cells[0] in COMMANDS and len(row.cells) >= 4 for row in table.rows)
     return 0 < commands >= len(table.rows) / 2
 
@@ -263,10 +268,7 @@ def _sweep(
         heading_deg=np.array([pulse.heading_deg for pulse in pulses]),
         power_db=np.array([pulse.power_db for pulse in pulses]),
         frequency_hz=float(np.median([pulse.frequency_hz for pulse in pulses])),
-        position=Place(
-            float(np.median([place.lat for place in places])),
-            float(np.median([place.lon for place in places])),
-        ),
+        position=middle_of([place.lat for place in places], [place.lon for place in places]),
         altitude_amsl_m=float(np.mean([altitude for _, altitude in ends])) if ends else 0.0,
         tag=wanted,
     ), offsets.most_common(1)[0][0]

@@ -37,14 +37,14 @@ class FileUnreadable:
 @dataclass(frozen=True, slots=True)
 class FileUnusable:
     file: str
-    why: Literal["not_text", "empty", "no_pulse", "one_heading"]
+    why: Literal["not_text", "empty", "no_pulse", "one_heading", "sweeps"]
     code: Literal["file_unusable"] = "file_unusable"
 
     english: ClassVar[Words] = Words(
         "The file {file} {why?not_text=is not a text file|empty=holds no rows of data|"
         "no_pulse=holds no pulse (no row that starts with 7)|"
-        "one_heading=holds fewer than two rows of time and heading}.",
-        "{why?not_text=Export the recording as CSV|*=Check that it is the right file}.",
+        "one_heading=holds fewer than two rows of time and heading|sweeps=holds sweeps, no bearings}.",
+        "{why?not_text=Export the recording as CSV|sweeps=Use crossfix sweep|*=Check that it is the right file}.",
     )
 
 

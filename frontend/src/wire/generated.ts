@@ -3662,7 +3662,7 @@ export interface components {
         FileUnusable: {
             file: string;
             /** @enum {string} */
-            why: "not_text" | "empty" | "no_pulse" | "one_heading";
+            why: "not_text" | "empty" | "no_pulse" | "one_heading" | "sweeps";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

@@ -55,6 +55,23 @@ def test_crossing_bearings_find_the_emitter(tmp_path: Path) -> None:
     assert shape(answer["c95"]).contains(Point(truth.lon, truth.lat))
 
 
+def test_what_a_krakens_page_held_is_read_as_an_import_reads_it(tmp_path: Path) -> None:
+    path = tmp_path / "kraken.csv"
+    heard = (
+        "17000000{at}123, 40, 80.5, -31.2, 868300000, UCA, 412, {station}, 50.6, 7.2, 350.0, 10.0, GPS, R, R, R, R"
+    )
+    path.write_text(heard.format(at=10, station="roof") + "\n" + heard.format(at=40, station="car"))
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+    assert answer["bearings"] == 2
+
+
+def test_bearings_on_both_sides_of_the_dateline_cross_there(tmp_path: Path) -> None:
+    path = tmp_path / "bearings.csv"
+    path.write_text("lat,lon,bearing_deg\n0,179.999,45\n0,-179.995,315\n")
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+    assert answer["estimate"]["lon"] == pytest.approx(-179.998, abs=1e-3)
+
+
 def test_one_bearing_is_answered_honestly(tmp_path: Path) -> None:
     answer = json.loads(CliRunner().invoke(APP, [str(written(tmp_path, [(0, 0, 45.0)])), "--json"]).stdout)
     assert answer["expected_rmse_m"] > 100.0

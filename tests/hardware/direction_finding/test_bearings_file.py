@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from refusals import refusing
 
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, read_bearings
 from hardware.direction_finding.table_file import RecordingError
-from hardware.reasons.table import CellUnusable, Quantity
+from hardware.reasons.table import CellUnusable, FileUnusable, Quantity, TooManyCells
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -67,8 +68,40 @@ def test_bad_rows_are_named_and_left_out(tmp_path: Path, row: str, column: int, 
 
 
 @pytest.mark.parametrize(
-    "text", ["", "a,b\n", "lat,lon,bearing\n", "lat,lon,angle\n1,2,3\n", "x,y,z,w,v\n", "50.1,7.2,north\n"]
+    "text",
+    [
+        "",
+        "a,b\n",
+        "1,50.1,7.2,10\n2,50.2,7.3,20\n",
+        "50.1,7.2,10,0.9\n50.2,7.3,20,0.8\n",
+        "lat,lon,bearing\n",
+        "lat,lon,angle\n1,2,3\n",
+        "x,y,z,w,v\n",
+        "50.1,7.2,north\n",
+    ],
 )
 def test_useless_files_are_refused_with_their_name(tmp_path: Path, text: str) -> None:
     with pytest.raises(RecordingError, match=r"bearings\.csv"):
         read_bearings(written(tmp_path, text))
+
+
+@pytest.mark.parametrize("row", ["50,000,7,000,45,0", "1,50.1,7.2,45"])
+def test_rows_with_more_numbers_than_columns_are_refused(tmp_path: Path, row: str) -> None:
+    path = written(tmp_path, f"lat,lon,bearing_deg\n{row}\n")
+    with refusing(TooManyCells(str(path), 2, row.count(",") + 1, 3), RecordingError):
+        read_bearings(path)
+
+
+@pytest.mark.parametrize(
+    "text", ["lat,lon,azimuth,power_db\n50.1,7.2,10,-60\n", "10,50.1,7.1,140\n7,2,146e6,0,0,20\n11,50.1,7.1,140\n"]
+)
+def test_sweeps_are_no_bearings(tmp_path: Path, text: str) -> None:
+    path = written(tmp_path, text)
+    with refusing(FileUnusable(str(path), "sweeps"), RecordingError):
+        read_bearings(path)
+
+
+@pytest.mark.parametrize("tag", ["7", "10", "11"])
+def test_a_bearing_of_a_tag_that_is_a_command_elsewhere_is_one(tmp_path: Path, tag: str) -> None:
+    row = f"{tag},turn.csv,137.6,0.06,35.2,-111.7,9.6,2107.2,1684766889.8,1684767153.8\n"
+    assert read_bearings(written(tmp_path, row)).bearings[0].bearing_deg == 137.6

@@ -141,7 +141,7 @@ FULL = np.arange(0.0, 360.0, 1.5)
         (sweep_of(np.empty(0), np.empty(0)), NothingHeardInTurn()),
         (sweep_of(FULL, np.full(FULL.size, np.nan)), PowerNotNumbers()),
         (sweep_of(FULL, heard(YAGI, 10.0, FULL), clipped_samples=60), Overdriven(60, 240)),
-        (sweep_of(FULL, np.minimum(heard(YAGI, 10.0, FULL), -75.0)), Overdriven(155, 240)),
+        (sweep_of(FULL, np.minimum(heard(YAGI, 10.0, FULL), -75.0)), Overdriven(154, 240)),
         (sweep_of(FULL[:4], heard(YAGI, 10.0, FULL[:4])), TooFewDirections(3, 8)),
         (sweep_of(FULL[:150], heard(YAGI, 10.0, FULL[:150])), TurnIncomplete(223.5)),
         (sweep_of(FULL, np.full(FULL.size, -70.0)), ConstantPower()),
@@ -160,6 +160,16 @@ def test_a_lobe_that_is_cut_off_half_way_is_used() -> None:
     reading = FINDER.estimate(sweep_of(FULL, np.minimum(heard(YAGI, 10.0, FULL), -72.0)), YAGI)
     assert reading.accepted
     assert abs(error_deg(reading.bearing_deg, 10.0)) < 2.0 * reading.sigma_deg < 60.0
+
+
+def test_many_readings_at_one_heading_are_not_a_lobe_cut_off() -> None:
+    turned = np.append(FULL, np.full(600, 10.5))
+    assert FINDER.estimate(sweep_of(turned, np.round(heard(YAGI, 10.5, turned))), YAGI).accepted
+
+
+def test_an_antenna_that_is_flat_but_for_a_null_is_not_overdriven() -> None:
+    null = make_pattern("null", ANGLE, -12.0 * np.exp(-0.5 * ((ANGLE - 180.0) / 25.0) ** 2))
+    assert FINDER.estimate(sweep_of(FULL, np.round(heard(null, 10.0, FULL))), null).accepted
 
 
 def test_bearing_that_an_unheard_arc_hides_is_rejected() -> None:

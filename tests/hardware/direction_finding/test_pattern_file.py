@@ -13,6 +13,7 @@ from hardware.reasons.pattern import (
     PatternGap,
     PatternOfOtherFrequency,
     PatternRowUnusable,
+    PatternUnitUnknown,
     TooFewPoints,
 )
 from hardware.reasons.table import FileUnreadable, TooManyCells
@@ -110,6 +111,10 @@ def test_columns_beside_angle_and_gain_are_not_read():
         ("0, 1\n10, 2\n", TooFewPoints("mine", 2, 8)),
         ("0, 1\n10, x\n", PatternRowUnusable("mine.csv", 2, "10, x")),
         ("0, 1\n10, nan\n" + TURNTABLE[19:], NotAPattern("mine", "numbers")),
+        ("inf, 1\n10, 1\n", NotAPattern("mine", "numbers")),
+        ("angle_gon, gain_db\n0, 1\n", NotAPattern("mine.csv", "rows")),
+        ("angle_deg, gain_linear\n0, 1\n", PatternUnitUnknown("mine.csv", "gain_linear")),
+        ("angle_deg, Attenuation (dB)\n0, 1\n", PatternUnitUnknown("mine.csv", "Attenuation (dB)")),
         ("\n".join(f"{a}, {a / 20}" for a in range(0, 280, 30)), PatternGap("mine", 90.0, 270.0, 60.0)),
     ],
 )

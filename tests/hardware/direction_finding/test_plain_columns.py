@@ -84,6 +84,7 @@ def test_decimal_commas_between_commas_are_refused_with_the_remedy(
         lambda k, heading, power: f"{1_780_000_000 + k},{heading - 180.0},{power}",
         lambda k, heading, power: f"{heading},{k},{power}",
         lambda k, heading, power: f"{heading},{power + 90},50.6,7.2",
+        lambda k, heading, power: f"{heading},{power},{power - 3}",
     ],
 )
 def test_three_unnamed_columns_ask_for_a_header(tmp_path: Path, row: Callable[[int, float, float], str]) -> None:
@@ -97,3 +98,16 @@ def test_headings_of_a_turn_before_power_below_zero_need_no_header(tmp_path: Pat
     path = file_of(tmp_path, *(f"{heading},{power},50.61,7.25" for heading, power in ROWS))
     (recorded,) = read_recording(path).sweeps
     assert recorded.sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
+
+
+def test_two_columns_of_one_name_cannot_be_told_apart(tmp_path: Path) -> None:
+    path = file_of(tmp_path, "heading_deg,power_db,power_db", "10,-60,-70")
+    with refusing(ColumnsUnknown(str(path), 1, 3, EXPECTED), RecordingError):
+        read_recording(path)
+
+
+@pytest.mark.parametrize("first", [7, 10, 11])
+def test_a_first_column_like_commands_under_a_header_is_none(tmp_path: Path, first: int) -> None:
+    lines = (f"{first},7.2,{heading},{power}" for heading, power in ROWS)
+    path = file_of(tmp_path, "lat,lon,heading_deg,power_db", *lines)
+    assert read_recording(path).sweeps[0].sweep.position.lat == first

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hardware.direction_finding.recordings import Recording, read_recording
-from hardware.reasons.table import PlacesApart
+from hardware.reasons.table import CellUnusable, PlacesApart
 
 TURN = range(0, 360, 10)
 
@@ -86,3 +86,26 @@ def test_blank_lines_within_one_turn_part_nothing(tmp_path: Path) -> None:
 def test_a_row_left_out_parts_no_turn(tmp_path: Path) -> None:
     rows = [*turn("A", 100), "A,0,", *turn("A", 250)]
     assert [one.sweep.power_db.size for one in read(tmp_path, "id,heading_deg,power_db", rows).sweeps] == [72]
+
+
+def test_a_part_that_did_not_go_round_is_a_sweep_beside_those_that_did(tmp_path: Path) -> None:
+    rows = [*turn("B", 100), "", *turn("A", 250), "", *turn("A", 250, range(0, 60, 10))]
+    assert [one.sweep.power_db.size for one in read(tmp_path, "id,heading_deg,power_db", rows).sweeps] == [36, 36, 6]
+
+
+def test_two_halves_are_one_turn_whatever_stands_between(tmp_path: Path) -> None:
+    rows = [*turn("B", 100, range(0, 180, 10)), "# other way", *turn("B", 100, range(180, 360, 10))]
+    assert [one.sweep.power_db.size for one in read(tmp_path, "id,heading_deg,power_db", rows).sweeps] == [36]
+
+
+def test_a_header_again_begins_another_turn(tmp_path: Path) -> None:
+    header = "id,heading_deg,power_db"
+    recording = read(tmp_path, header, [*turn("B", 100), header, *turn("A", 250)])
+    assert [one.sweep.power_db.size for one in recording.sweeps] == [36, 36]
+    assert recording.remarks == (CellUnusable(str(tmp_path / "turn.csv"), 38, 2, "heading_deg", "heading"),)
+
+
+def test_a_turn_over_the_dateline_was_made_there(tmp_path: Path) -> None:
+    rows = [f"12,{'-' if heading % 20 else ''}179.99999,{heading},-60" for heading in TURN]
+    (recorded,) = read(tmp_path, "lat,lon,heading_deg,power_db", rows).sweeps
+    assert abs(recorded.sweep.position.lon) > 179.99

@@ -65,3 +65,30 @@ def test_zeros_are_no_text_in_any_encoding(tmp_path: Path) -> None:
     path.write_bytes(TURN.encode("utf-16-le"))
     with refusing(FileUnusable(str(path), "not_text"), RecordingError):
         read_table(path)
+
+
+def test_an_empty_cell_before_a_tab_keeps_its_column(tmp_path: Path) -> None:
+    path = tmp_path / "turn.tsv"
+    path.write_text("time\theading_deg\tpower_db\n\t10\t-60\n1\t20\t-61\n")
+    assert read_recording(path).sweeps[0].sweep.heading_deg.tolist() == [10.0, 20.0]
+
+
+def test_numbers_between_blanks_are_columns_with_or_without_a_header(tmp_path: Path) -> None:
+    path = tmp_path / "turn.txt"
+    for header in ("", "heading_deg power_db\n", "# heading_deg power_db\n"):
+        path.write_text(header + "  10.5   -6.0e+01\n  20.5   -6.1e+01\n")
+        (recorded,) = read_recording(path).sweeps
+        assert (recorded.sweep.heading_deg.tolist(), recorded.sweep.power_db.tolist()) == ([10.5, 20.5], [-60.0, -61.0])
+
+
+def test_commas_in_notes_separate_nothing_between_semicolons(tmp_path: Path) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_text("heading_deg;power_db;note\n10,5;-60,5;tree, left\n")
+    assert read_recording(path).sweeps[0].sweep.heading_deg.tolist() == [10.5]
+
+
+def test_lines_end_where_editors_end_them_and_names_carry_no_controls(tmp_path: Path) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_bytes("heading_deg,power_db,tag\r\n10,-60,\x1b]0;A\x85B,20,-61\r12,-62,A\n".encode("latin-1"))
+    assert [row.line for row in read_table(path).rows] == [1, 2, 3]
+    assert read_table(path).rows[1].cells[2] == "]0;A\x85B"
