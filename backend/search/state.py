@@ -248,7 +248,7 @@ def _evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=None):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
             return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)
-        case AlertCleared(alert_id=alert_id):
+        case AlertCleared(alert_id=alert_id) if any(a.alert_id == alert_id for a in state.open_alerts):
             return replace(state, open_alerts=tuple(a for a in state.open_alerts if a.alert_id != alert_id))
         case ServerRestarted():
             return _each(state, _folded_again)
