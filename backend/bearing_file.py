@@ -9,7 +9,6 @@ from backend.search.reported import ReportedBearing
 from hardware.direction_finding.bearings_file import EARLIEST_S, RecordedBearing, holds_bearings, read_bearings
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError, Row, Table, read_table, some_of
-from hardware.direction_finding.uavrt import is_uavrt
 from hardware.reasons.table import CellUnusable, NothingUsable, OneTagOnly
 
 EPOCH_MS = 1e3 * EARLIEST_S
@@ -18,8 +17,6 @@ EPOCH_MS = 1e3 * EARLIEST_S
 def read_bearing_file(path: Path, tag: str | None) -> Recording | None:
     """None for a file of something else. tag: whose bearings, in a file of several. Raises RecordingError."""
     table = read_table(path)
-    if is_uavrt(table) and not holds_bearings(table):
-        return None
     kraken = kraken_in(table)
     if kraken is not None:
         return kraken

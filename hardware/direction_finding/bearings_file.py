@@ -53,7 +53,8 @@ class RecordedBearings:
 
 @dataclass(frozen=True, slots=True)
 class _Columns:
-    """Indices from 0. width: how many there are, None: as many as a row likes."""
+    """Indices from 0. width: how many there are, None: as many as a row likes. noted: the last one is none of these,
+    and may hold anything."""
 
     lat: int
     lon: int
@@ -62,6 +63,7 @@ class _Columns:
     tag: int | None
     at: int | None = None
     width: int | None = None
+    noted: bool = False
 
 
 def holds_bearings(table: Table) -> bool:
@@ -80,7 +82,7 @@ def holds_bearings(table: Table) -> bool:
 def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
     """Read a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
     table = read_table(path)
-    if not holds_bearings(table) and (is_uavrt(table) or _names(table, POWER)):
+    if not holds_bearings(table) and (is_uavrt(table) or column_of(table.rows[0].cells, *POWER) is not None):
         raise RecordingError(FileUnusable(str(table.path), "sweeps"))
     columns, rows = _columns(table)
     if not rows:
@@ -88,7 +90,7 @@ def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> Rec
     bearings: list[RecordedBearing] = []
     remarks: list[CellUnusable | RowLeftOut] = []
     for row in rows:
-        if columns.width is not None and row.numbers_beyond(columns.width):
+        if _is_wide(row, columns):
             remarks.append(RowLeftOut(str(table.path), row.line, "wide"))
             continue
         bearing = _bearing(table, row, columns, sigma_deg)
@@ -101,8 +103,12 @@ def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> Rec
     return RecordedBearings(tuple(bearings), tuple(remarks))
 
 
-def _names(table: Table, names: tuple[str, ...]) -> bool:
-    return any(column_of(row.cells, *names) is not None for row in (table.rows[0], *table.comments))
+def _is_wide(row: Row, columns: _Columns) -> bool:
+    """Whether it has more numbers than there are columns; a note may hold commas."""
+    width = columns.width
+    if width is None or not row.numbers_beyond(width):
+        return False
+    return not columns.noted or row.number(width - 1) is not None
 
 
 def _nothing(
@@ -123,8 +129,8 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
             raise table.columns_unknown(header, *EXPECTED)
         sigma, tag = column_of(header.cells, *_SIGMA), column_of(header.cells, "tag", "tag_id", "tagid")
         last = max(k for k, name in enumerate(header.cells) if name)
-        width = last + 1 if last in (*places, sigma, tag) else None  # else a note, which may hold anything
-        columns = _Columns(places[0], places[1], places[2], sigma, tag, width=width)
+        noted = last not in (*places, sigma, tag)
+        columns = _Columns(places[0], places[1], places[2], sigma, tag, width=last + 1, noted=noted)
         return columns, table.rows[1:] if header is first else table.rows
     if len(first.cells) == 10:
         return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0, at=9), table.rows
@@ -144,7 +150,7 @@ def _counts_rows(table: Table) -> bool:
 def _unlike_sigmas(table: Table) -> bool:
     """Whether the fourth column holds no degrees: nobody takes bearings to less than one, and shares are so small."""
     fourth = [sigma for row in table.rows if (sigma := row.number(3)) is not None]
-    return len(table.rows[0].cells) == 4 and bool(fourth) and 0.0 < min(fourth) <= max(fourth) <= 1.0
+    return len(table.rows[0].cells) == 4 and bool(fourth) and 0.0 < min(fourth) <= max(fourth) < 1.0
 
 
 def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float) -> RecordedBearing | CellUnusable:

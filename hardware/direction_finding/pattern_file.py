@@ -28,6 +28,7 @@ from hardware.direction_finding.table_file import (
     cells_of,
     commas_in_numbers,
     decoded,
+    lines_of,
     number_of,
     plain_name,
 )
@@ -205,7 +206,7 @@ def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float
 def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -> AntennaPattern:
     rows: list[Row] = []
     header: Row | None = None
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(lines_of(text), start=1):
         bare = line.split("#")[0].strip()
         try:
             cells, named = _turntable_cells(bare), cells_of(bare or " ")
@@ -244,10 +245,12 @@ def _turntable_cells(line: str) -> tuple[str, ...]:
 
 def _refuse_units(filename: str, header: Row | None) -> None:
     """Raises PatternError where the header names other units than degrees and decibels of gain."""
-    angle, gain = (set(plain_name(name).split("_")) for name in (*(header.cells if header else ()), "", "")[:2])
-    if angle & {"rad", "radians", "gon", "grad"}:
+    if header is None:
+        return
+    angle, gain = (plain_name(name).split("_") for name in header.cells[:2])
+    if angle[-1] in {"rad", "radians", "gon"}:
         raise PatternError(NotAPattern(filename, "rows"))
-    if header and gain & {"linear", "lin", "ratio", "mw", "w", "v", "attenuation", "loss"}:
+    if gain[-1] in {"linear", "lin", "ratio", "mw", "w", "v"} or gain[0] in {"attenuation", "loss"}:
         raise PatternError(PatternUnitUnknown(filename, header.cells[1]))
 
 

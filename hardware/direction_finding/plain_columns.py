@@ -109,6 +109,11 @@ def _unit(name: str) -> Unit:
     return "decibels" if name.endswith(_DECIBELS) else "unnamed"
 
 
+def _is_no_power(column: Sequence[float]) -> bool:
+    """A latitude south of the equator stays; power changes as the antenna turns."""
+    return not column or max(column) >= 0.0 or max(column) - min(column) < 1.0
+
+
 def _unnamed(table: Table, rows: Sequence[Row]) -> Columns:
     """Heading and power; of more than two columns only where these cannot be a time and a heading."""
     wide = [row for row in rows if row.numbers_beyond(2)]
@@ -120,6 +125,6 @@ def _unnamed(table: Table, rows: Sequence[Row]) -> Columns:
     second = [value for row in wide if (value := row.decibels(1)) is not None]
     turned = bool(first) and max(map(abs, first)) <= 360.0 and max(first) - min(first) > HALF_TURN_DEG
     third = [value for row in wide if (value := row.decibels(2)) is not None]
-    if not (turned and second and max(second) < 0.0 and third and max(third) >= 0.0):
+    if not (turned and second and max(second) < 0.0 and _is_no_power(third)):
         raise table.columns_unknown(wide[0], *EXPECTED)
     return Columns(0, 1, None)

@@ -56,7 +56,7 @@ class Row:
         return self._float(column, _DEGREES)
 
     def decibels(self, column: int) -> float | None:
-        """The same of a number that is one of decibels, if it has a unit."""
+        """The same, in decibels if it has a unit."""
         return self._float(column, _DECIBELS)
 
     def _float(self, column: int, unit: re.Pattern[str]) -> float | None:
@@ -98,8 +98,8 @@ def read_table(path: Path | str) -> Table:
         raise RecordingError(FileUnusable(str(path), "not_text"))
     rows: list[Row] = []
     comments: list[Row] = []
-    for number, line in enumerate(_LINE_ENDS.split(text), start=1):
-        stripped = line.strip(" ")
+    for number, line in enumerate(lines_of(text), start=1):
+        stripped = line.rstrip().strip(" ") if "\t" in line.strip() else line.strip()
         try:
             if line.lstrip().startswith("#"):
                 comments.append(Row(number, cells_of(stripped.lstrip().lstrip("#"))))
@@ -109,15 +109,23 @@ def read_table(path: Path | str) -> Table:
             raise RecordingError(FileUnusable(str(path), "not_text")) from error
     if not rows:
         raise RecordingError(FileUnusable(str(path), "empty"))
-    if 2 * sum(_between_blanks(row) is not None for row in rows) > len(rows):
-        rows, comments = ([Row(row.line, _words(row)) for row in some] for some in (rows, comments))
+    between_blanks = [len(_words(row)) for row in rows if _has_numbers_between_blanks(row)]
+    if 2 * len(between_blanks) > len(rows):
+        width = max(between_blanks)
+        rows, comments = ([_parted_at_blanks(row, width) for row in some] for some in (rows, comments))
     return Table(path, tuple(rows), tuple(comments))
 
 
-def _between_blanks(row: Row) -> tuple[str, ...] | None:
-    """Of a row in which nothing else separates numbers."""
+def _has_numbers_between_blanks(row: Row) -> bool:
+    """And nothing else separates them."""
     cells = _words(row)
-    return cells if len(row.cells) == 1 < len(cells) and all(number_of(cell) is not None for cell in cells) else None
+    return len(row.cells) == 1 < len(cells) and all(number_of(cell) is not None for cell in cells)
+
+
+def _parted_at_blanks(row: Row, width: int) -> Row:
+    """A row of numbers, or a header that has a word for each column: "Heading (deg)" is one name of two words."""
+    cells = _words(row)
+    return Row(row.line, cells) if len(cells) == width or number_of(cells[0]) is not None else row
 
 
 def _words(row: Row) -> tuple[str, ...]:
@@ -132,6 +140,11 @@ def decoded(raw: bytes) -> str:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         return raw.decode("latin-1")
+
+
+def lines_of(text: str) -> list[str]:
+    """As editors end them: a letter of some old code page that `str.splitlines` takes for an end is none."""
+    return _LINE_ENDS.split(text)
 
 
 def number_of(cell: str) -> float | None:

@@ -44,7 +44,8 @@ class FileUnusable:
         "The file {file} {why?not_text=is not a text file|empty=holds no rows of data|"
         "no_pulse=holds no pulse (no row that starts with 7)|"
         "one_heading=holds fewer than two rows of time and heading|sweeps=holds sweeps, no bearings}.",
-        "{why?not_text=Export the recording as CSV|sweeps=Use crossfix sweep|*=Check that it is the right file}.",
+        "{why?not_text=Export the recording as CSV|sweeps=Use crossfix sweep, or name no power|"
+        "*=Check that it is the right file}.",
     )
 
 

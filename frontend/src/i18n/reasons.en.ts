@@ -323,7 +323,7 @@ export const reasonsEn: ReasonTable = {
   ],
   file_unusable: [
     "The file {file} {why?not_text=is not a text file|empty=holds no rows of data|no_pulse=holds no pulse (no row that starts with 7)|one_heading=holds fewer than two rows of time and heading|sweeps=holds sweeps, no bearings}.",
-    "{why?not_text=Export the recording as CSV|sweeps=Use crossfix sweep|*=Check that it is the right file}.",
+    "{why?not_text=Export the recording as CSV|sweeps=Use crossfix sweep, or name no power|*=Check that it is the right file}.",
   ],
   columns_unknown: [
     "The {columns|column|columns} of {file} (line {line}) cannot be told apart.",

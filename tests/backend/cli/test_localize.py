@@ -57,9 +57,7 @@ def test_crossing_bearings_find_the_emitter(tmp_path: Path) -> None:
 
 def test_what_a_krakens_page_held_is_read_as_an_import_reads_it(tmp_path: Path) -> None:
     path = tmp_path / "kraken.csv"
-    heard = (
-        "17000000{at}123, 40, 80.5, -31.2, 868300000, UCA, 412, {station}, 50.6, 7.2, 350.0, 10.0, GPS, R, R, R, R"
-    )
+    heard = "17000000{at}123, 40, 80.5, -31.2, 868300000, UCA, 412, {station}, 50.6, 7.2, 350.0, 10.0, GPS, R, R, R, R"
     path.write_text(heard.format(at=10, station="roof") + "\n" + heard.format(at=40, station="car"))
     answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
     assert answer["bearings"] == 2

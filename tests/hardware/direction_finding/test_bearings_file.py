@@ -85,10 +85,12 @@ def test_useless_files_are_refused_with_their_name(tmp_path: Path, text: str) ->
         read_bearings(written(tmp_path, text))
 
 
-@pytest.mark.parametrize("row", ["50,000,7,000,45,0", "1,50.1,7.2,45"])
-def test_rows_with_more_numbers_than_columns_are_refused(tmp_path: Path, row: str) -> None:
-    path = written(tmp_path, f"lat,lon,bearing_deg\n{row}\n")
-    with refusing(TooManyCells(str(path), 2, row.count(",") + 1, 3), RecordingError):
+@pytest.mark.parametrize(
+    ("more", "row"), [("", "50,000,7,000,45,0"), ("", "1,50.1,7.2,45"), (",quality", "50,0,7,0,45,0,0,9")]
+)
+def test_rows_with_more_numbers_than_columns_are_refused(tmp_path: Path, more: str, row: str) -> None:
+    path = written(tmp_path, f"lat,lon,bearing_deg{more}\n{row}\n")
+    with refusing(TooManyCells(str(path), 2, row.count(",") + 1, 3 + more.count(",")), RecordingError):
         read_bearings(path)
 
 

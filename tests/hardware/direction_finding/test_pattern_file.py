@@ -93,6 +93,11 @@ def test_decimal_commas_between_commas_are_not_cut_off(rows, line, cells):
         parse_pattern("mine.csv", rows)
 
 
+@pytest.mark.parametrize("header", ["Winkel (Grad), Gewinn (dB)", "angle_deg, V-pol gain (dB)", "Yagi, 10 mW at 30 m"])
+def test_headers_of_degrees_and_decibels_in_any_words_are_read(header: str) -> None:
+    assert parse_pattern("mine.csv", TURNTABLE.replace("angle_deg, gain_db", header)).gain_db[3] == -4.5
+
+
 def test_columns_beside_angle_and_gain_are_not_read():
     more = (
         TURNTABLE.replace("gain_db", "gain_db, phase_deg").replace("\n", ", 12\n").replace("phase_deg, 12", "phase_deg")

@@ -95,7 +95,7 @@ def test_three_unnamed_columns_ask_for_a_header(tmp_path: Path, row: Callable[[i
 
 
 def test_headings_of_a_turn_before_power_below_zero_need_no_header(tmp_path: Path) -> None:
-    path = file_of(tmp_path, *(f"{heading},{power},50.61,7.25" for heading, power in ROWS))
+    path = file_of(tmp_path, *(f"{heading},{power},-33.61,18.25" for heading, power in ROWS))
     (recorded,) = read_recording(path).sweeps
     assert recorded.sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hardware.direction_finding.recordings import Recording, read_recording
-from hardware.reasons.table import CellUnusable, PlacesApart
+from hardware.reasons.table import CellUnusable, OtherTagsLeftOut, PlacesApart
 
 TURN = range(0, 360, 10)
 
@@ -109,3 +109,10 @@ def test_a_turn_over_the_dateline_was_made_there(tmp_path: Path) -> None:
     rows = [f"12,{'-' if heading % 20 else ''}179.99999,{heading},-60" for heading in TURN]
     (recorded,) = read(tmp_path, "lat,lon,heading_deg,power_db", rows).sweeps
     assert abs(recorded.sweep.position.lon) > 179.99
+
+
+def test_a_block_for_each_tag_is_of_the_tag_heard_most(tmp_path: Path) -> None:
+    rows = [*turn("B", 100), "", *turn("A", 250), "A,0,-90"]
+    recording = read(tmp_path, "tag,heading_deg,power_db", rows)
+    assert [(one.sweep.tag, one.sweep.power_db.size) for one in recording.sweeps] == [("A", 37)]
+    assert recording.remarks == (OtherTagsLeftOut(str(tmp_path / "turn.csv"), 2, "A", 36, ("B",)),)

@@ -10,7 +10,7 @@ from refusals import refusing
 from hardware.direction_finding.pattern_file import load_pattern
 from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError, read_table
-from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity
+from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnusable, NothingUsable, Quantity
 
 TURN = "heading_deg,power_db\n" + "\n".join(f"{heading},{-60 - heading / 20}" for heading in range(0, 360, 10))
 
@@ -92,3 +92,17 @@ def test_lines_end_where_editors_end_them_and_names_carry_no_controls(tmp_path: 
     path.write_bytes("heading_deg,power_db,tag\r\n10,-60,\x1b]0;A\x85B,20,-61\r12,-62,A\n".encode("latin-1"))
     assert [row.line for row in read_table(path).rows] == [1, 2, 3]
     assert read_table(path).rows[1].cells[2] == "]0;A\x85B"
+
+
+def test_a_header_of_more_words_than_columns_is_no_header_between_blanks(tmp_path: Path) -> None:
+    path = tmp_path / "turn.txt"
+    path.write_text("# heading (deg) power (dB) other (dB)\n10 -60 -65\n200 -62 -64\n")
+    with refusing(ColumnsUnknown(str(path), 2, 3, ("heading_deg", "power_db")), RecordingError):
+        read_recording(path)
+
+
+@pytest.mark.parametrize("row", ["10,40\t", "\t10,40", "10\t40\t"])
+def test_tabs_around_a_row_are_no_columns(tmp_path: Path, row: str) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_text(f"{row}\n")
+    assert [cell for cell in read_table(path).rows[0].cells if cell] == ["10", "40"]

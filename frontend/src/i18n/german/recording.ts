@@ -13,7 +13,7 @@ export const recording = {
   file_unreadable: ["Die Datei {file} ist nicht lesbar ({detail}).", "Ihren Pfad und ihr Format prüfen."],
   file_unusable: [
     "Die Datei {file} {why?not_text=ist keine Textdatei|empty=enthält keine Zeilen mit Daten|no_pulse=enthält keinen Puls (keine Zeile, die mit 7 beginnt)|one_heading=enthält weniger als zwei Zeilen mit Zeit und Kurs|sweeps=enthält Drehungen, keine Peilungen}.",
-    "{why?not_text=Die Aufnahme als CSV ausgeben|sweeps=crossfix sweep nehmen|*=Prüfen, ob es die richtige Datei ist}.",
+    "{why?not_text=Die Aufnahme als CSV ausgeben|sweeps=Mit crossfix sweep lesen oder keine Leistung nennen|*=Prüfen, ob es die richtige Datei ist}.",
   ],
   columns_unknown: [
     "Die {columns|Spalte|Spalten} von {file} (Zeile {line}) {columns?1=ist|*=sind} nicht zu unterscheiden.",
