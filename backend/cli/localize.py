@@ -56,7 +56,10 @@ MEDIAN: Estimator = "geometric_median"
 
 def localize(
     file: Annotated[
-        Path, typer.Argument(help="UAV-RT bearing file, or CSV with columns lat, lon, bearing_deg[, sigma_deg].")
+        Path,
+        typer.Argument(
+            help="UAV-RT bearing file, CSV with columns lat, lon, bearing_deg[, sigma_deg], or a KrakenSDR's log."
+        ),
     ],
     area: Annotated[
         Path | None,

@@ -40,7 +40,7 @@ def turns_in(heard: Sequence[HeardAt], columns: Columns, rows: Sequence[Row]) ->
     """The usable rows of each turn, in the order in which turns begin; at least one turn of at least one row."""
     numbering = [column for column in columns.turns if _numbers_turns(heard, column)]
     if not numbering:
-        return _by_place(heard) or _by_blocks(heard, rows, columns.tag) or [list(heard)]
+        return _by_place(heard) or _by_blocks(heard, rows, columns) or [list(heard)]
     turns: dict[tuple[str, ...], list[HeardAt]] = {}
     for one in heard:
         turns.setdefault(tuple(_cell(one, column) for column in numbering), []).append(one)
@@ -78,21 +78,24 @@ def _by_place(heard: Sequence[HeardAt]) -> list[list[HeardAt]] | None:
     return turns if len(turns) > 1 and all(_turned_deg(turn) >= HALF_TURN_DEG for turn in turns) else None
 
 
-def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row], tag: int | None) -> list[list[HeardAt]] | None:
+def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row], columns: Columns) -> list[list[HeardAt]] | None:
     """None unless it went round in several blocks of lines; blocks of one tag each are not several turns."""
-    begins = [after.line for before, after in pairwise(rows) if after.line - before.line > 1 or _is_header(after)]
+    begins = [
+        after.line for before, after in pairwise(rows) if after.line - before.line > 1 or _is_header(after, columns)
+    ]
     turns: list[list[HeardAt]] = [[] for _ in range(len(begins) + 1)]
     for one in heard:
         turns[bisect(begins, one.row.line)].append(one)
     if sum(len(turn) > 1 and _turned_deg(turn) >= ROUND_DEG for turn in turns) < 2:
         return None
     turns = [turn for turn in turns if turn]
+    tag = columns.tag
     tags = [{_cell(one, tag) for one in turn} for turn in turns] if tag is not None else []
     return None if any(len(named) == 1 and named != tags[0] for named in tags) else turns
 
 
-def _is_header(row: Row) -> bool:
-    return column_of(row.cells, *HEADING) is not None
+def _is_header(row: Row, columns: Columns) -> bool:
+    return row.number(columns.heading) is None and column_of(row.cells, *HEADING) is not None
 
 
 def _turned_deg(turn: Sequence[HeardAt]) -> float:

@@ -125,7 +125,8 @@ def _has_numbers_between_blanks(row: Row) -> bool:
 def _parted_at_blanks(row: Row, width: int) -> Row:
     """A row of numbers, or a header that has a word for each column: "Heading (deg)" is one name of two words."""
     cells = _words(row)
-    return Row(row.line, cells) if len(cells) == width or number_of(cells[0]) is not None else row
+    begins_with_number = bool(cells) and number_of(cells[0]) is not None
+    return Row(row.line, cells) if len(cells) == width or begins_with_number else row
 
 
 def _words(row: Row) -> tuple[str, ...]:

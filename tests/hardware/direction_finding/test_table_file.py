@@ -75,7 +75,7 @@ def test_an_empty_cell_before_a_tab_keeps_its_column(tmp_path: Path) -> None:
 
 def test_numbers_between_blanks_are_columns_with_or_without_a_header(tmp_path: Path) -> None:
     path = tmp_path / "turn.txt"
-    for header in ("", "heading_deg power_db\n", "# heading_deg power_db\n"):
+    for header in ("", "heading_deg power_db\n", "# heading_deg power_db\n", "#\n", '""\n'):
         path.write_text(header + "  10.5   -6.0e+01\n  20.5   -6.1e+01\n")
         (recorded,) = read_recording(path).sweeps
         assert (recorded.sweep.heading_deg.tolist(), recorded.sweep.power_db.tolist()) == ([10.5, 20.5], [-60.0, -61.0])
