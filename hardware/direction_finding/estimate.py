@@ -240,7 +240,7 @@ def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:
 
 
 def cut_off(binned: BinnedSweep, pattern: AntennaPattern) -> Overdriven | None:
-    """Where so many directions were heard at the very largest power that too little of the lobe is left."""
+    """Why too little of the lobe is left: most directions were heard at the very largest power. None: enough is."""
     level, count = binned.power_db[binned.filled], binned.count[binned.filled]
     at_top = level >= level.max() - 1e-9
     gain_db = pattern.gain_at(np.arange(360.0))
