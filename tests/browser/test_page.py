@@ -310,7 +310,8 @@ def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen:
 
 def test_a_single_stray_key_flies_nothing(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, EXAMPLE)
-    screen.expect_phase(*AUTOMATIC)
+    flying = "() => document.querySelector('[data-testid=state-words][data-phase=flying]')"
+    screen.page.wait_for_function(flying, polling=100, timeout=90_000)  # its legs last a second or two of the replay
     for key in "ahr?":
         screen.page.keyboard.press(key)
     expect(screen.part("key-sheet")).to_be_visible()
