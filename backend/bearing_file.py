@@ -6,7 +6,7 @@ from pathlib import Path
 
 from backend.kraken import FEWEST_COLUMNS, KrakenRefused, read_kraken
 from backend.search.reported import ReportedBearing
-from hardware.direction_finding.bearings_file import EARLIEST_S, RecordedBearing, holds_bearings, read_bearings
+from hardware.direction_finding.bearings_file import EARLIEST_S, RecordedBearing, bearings_in, holds_bearings
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError, Row, Table, read_table, some_of
 from hardware.reasons.table import CellUnusable, NothingUsable, OneTagOnly
@@ -22,7 +22,7 @@ def read_bearing_file(path: Path, tag: str | None) -> Recording | None:
         return kraken
     if not holds_bearings(table):
         return None
-    found = read_bearings(path)
+    found = bearings_in(table)
     tags = {one.tag for one in found.bearings if one.tag is not None}
     if (tag is not None and tags and tag not in tags) or (tag is None and len(tags) > 1):
         raise RecordingError(OneTagOnly(str(path), some_of(tags)))

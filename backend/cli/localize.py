@@ -19,7 +19,7 @@ from backend.search.source_priors import LEAST_OUTLIERS, unknown_errors
 from backend.settings import settings_of
 from backend.spec import ErrorModel
 from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
-from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
+from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, bearings_in
 from hardware.direction_finding.table_file import RecordingError, read_table
 from hardware.frame import LocalFrame, compass_to_angle, middle_of
 from hardware.readings import Place
@@ -118,8 +118,9 @@ def localize(
     Example: crossfix localize bearings.csv --range 800 --json
     """
     try:
-        kraken = kraken_in(read_table(file))
-        recorded = kraken or read_bearings(file, sigma or DEFAULT_SIGMA_DEG)
+        table = read_table(file)
+        kraken = kraken_in(table)
+        recorded = kraken or bearings_in(table, sigma or DEFAULT_SIGMA_DEG)
         for reason in recorded.remarks:
             remark(sentence_of(reason))
         whole = kraken is not None and tag is None  # of several stations

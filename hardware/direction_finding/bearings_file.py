@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
-from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
+from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of
 from hardware.direction_finding.uavrt import is_uavrt
 from hardware.readings import Place
 from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity, RowLeftOut, TooManyCells
@@ -79,9 +78,8 @@ def holds_bearings(table: Table) -> bool:
     )
 
 
-def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
-    """Read a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
-    table = read_table(path)
+def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
+    """Those of a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
     if not holds_bearings(table) and (is_uavrt(table) or column_of(table.rows[0].cells, *POWER) is not None):
         raise RecordingError(FileUnusable(str(table.path), "sweeps"))
     columns, rows = _columns(table)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from refusals import refusing
 
-from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, read_bearings
-from hardware.direction_finding.table_file import RecordingError
+from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearings, bearings_in
+from hardware.direction_finding.table_file import RecordingError, read_table
 from hardware.reasons.table import CellUnusable, FileUnusable, Quantity, TooManyCells
 
 
@@ -16,6 +16,10 @@ def written(tmp_path: Path, text: str) -> Path:
     path = tmp_path / "bearings.csv"
     path.write_text(text)
     return path
+
+
+def read_bearings(path: Path, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
+    return bearings_in(read_table(path), sigma_deg)
 
 
 def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
