@@ -30,10 +30,9 @@ from backend.workers import Workers
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import PatternError, parse_pattern
 from hardware.direction_finding.recordings import Recording
-from hardware.direction_finding.table_file import RecordingError, decoded
+from hardware.direction_finding.table_file import RecordingError, decoded, listed
 from hardware.reasons.iq_recording import NotIq
 from hardware.reasons.renamed import renamed
-from hardware.reasons.table import RemarksNotListed
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.sigmf_names import ARCHIVE, DATA, META, is_sigmf
 from hardware.sdr.spectrum import SpectrumError
@@ -42,8 +41,6 @@ router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], respons
 
 SIGMF = (META, DATA, ARCHIVE)
 MOST_FILES = 3
-MOST_REMARKS = 50
-"""Of one recording, one by one: they are a fact of the mission, which every page that shows it loads."""
 
 
 def _past(moment: datetime | None) -> datetime | None:
@@ -202,9 +199,7 @@ def _parsed(
     headings = next((path for path in names if path.name == "headings.csv"), None)
     bearings = None if is_sigmf(recording) or headings is not None else read_bearing_file(recording, tag)
     read = bearings or read_sweeps(recording, tag, IqReading(headings, frequency_hz, pulses))
-    if len(read.remarks) > MOST_REMARKS:
-        rest = RemarksNotListed(str(recording), len(read.remarks) - MOST_REMARKS)
-        read = replace(read, remarks=(*read.remarks[:MOST_REMARKS], rest))
+    read = replace(read, remarks=listed(recording, read.remarks))
     if is_sigmf(recording) or (frequency_hz is None and pulses is None):
         return read
     return replace(read, remarks=(*read.remarks, NotIq(str(recording), "signal")))

@@ -12,7 +12,7 @@ from hardware.direction_finding.calibration import CalibrationError, check_anten
 from hardware.direction_finding.calibration import calibrate as calibrate_sweeps
 from hardware.direction_finding.pattern_file import PatternError, load_pattern, save_pattern
 from hardware.direction_finding.recordings import read_recording
-from hardware.direction_finding.table_file import RecordingError
+from hardware.direction_finding.table_file import RecordingError, listed
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import PlaceNotStated
 from planner.reason import remedy_of, sentence_of, text_of
@@ -71,8 +71,7 @@ def _sweeps(files: list[Path], tag: str | None) -> list[Sweep]:
     sweeps: list[Sweep] = []
     for file in files:
         recording = read_recording(file, tag)
-        for reason in recording.remarks:
-            remark(sentence_of(reason))
+        remark(*map(sentence_of, listed(file, recording.remarks)))
         for recorded in recording.sweeps:
             if not recorded.place_known:
                 raise RecordingError(PlaceNotStated(str(file)))

@@ -24,9 +24,10 @@ def words_of(message: object) -> str:
     return " ".join(words.split())
 
 
-def remark(message: str) -> None:
-    """Something the user should know that is not the answer."""
-    typer.echo(f"note: {message}", err=True)
+def remark(*messages: str) -> None:
+    """What the user should know that is not the answer."""
+    for message in messages:
+        typer.echo(f"note: {message}", err=True)
 
 
 def print_json(value: Any) -> None:

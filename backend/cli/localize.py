@@ -20,7 +20,7 @@ from backend.settings import settings_of
 from backend.spec import ErrorModel
 from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, bearings_in
-from hardware.direction_finding.table_file import RecordingError, read_table
+from hardware.direction_finding.table_file import RecordingError, listed, read_table
 from hardware.frame import LocalFrame, compass_to_angle, middle_of
 from hardware.readings import Place
 from hardware.reasons.table import FileUnreadable
@@ -121,8 +121,7 @@ def localize(
         table = read_table(file)
         kraken = kraken_in(table)
         recorded = kraken or bearings_in(table, sigma or DEFAULT_SIGMA_DEG)
-        for reason in recorded.remarks:
-            remark(sentence_of(reason))
+        remark(*map(sentence_of, listed(file, recorded.remarks)))
         whole = kraken is not None and tag is None  # of several stations
         chosen = list(recorded.bearings) if whole else _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))

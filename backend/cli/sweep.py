@@ -15,7 +15,7 @@ from hardware.direction_finding.estimate import MINIMUM_QUALITY, SparseDirection
 from hardware.direction_finding.heading import HeadingError, made_true
 from hardware.direction_finding.pattern_file import PatternError, borrowed_pattern, load_pattern
 from hardware.direction_finding.recordings import RecordedSweep, mounted
-from hardware.direction_finding.table_file import RecordingError
+from hardware.direction_finding.table_file import RecordingError, listed
 from hardware.readings import BearingReading, Place
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
@@ -99,8 +99,7 @@ def sweep(
         heading_sigma = settings_of(heading_sigma_deg=heading_sigma_deg).heading_sigma_deg
     except (RecordingError, PatternError, SpectrumError, HeadingError, ValueError) as error:
         stop(error)
-    for reason in recording.remarks:
-        remark(sentence_of(reason))
+    remark(*map(sentence_of, listed(file, recording.remarks)))
     finder = SparseDirectionFinder(minimum_quality=minimum_quality, heading_sigma_deg=heading_sigma)
     answers: list[dict[str, Any]] = []
     for recorded in sweeps:

@@ -2,12 +2,31 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of
+from hardware.direction_finding.plain_units import LARGEST_RAD
+from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, plain_name
+from hardware.direction_finding.table_places import (
+    EASTING,
+    LATITUDE,
+    LONGITUDE,
+    NORTHING,
+    PlaceColumns,
+    Places,
+    place_columns,
+)
 from hardware.direction_finding.uavrt import is_uavrt
 from hardware.readings import Place
-from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity, RowLeftOut, TooManyCells
+from hardware.reasons.table import (
+    CellUnusable,
+    FileUnusable,
+    HeadingsInRadians,
+    NothingUsable,
+    RowLeftOut,
+    TooManyCells,
+)
 
 DEFAULT_SIGMA_DEG = 7.0
 """The field system's (spec section 8), for bearings whose file states none."""
@@ -15,12 +34,15 @@ EARLIEST_S = 1e8
 """Times from here on are UTC epoch seconds; smaller ones count from somewhere else."""
 LATEST_S = 4_102_444_800.0
 """2100: no bearing was taken so late."""
+FEWEST_BEARINGS = 3
+"""Fewer may well all lie within six degrees of north."""
 EXPECTED = ("lat", "lon", "bearing_deg")
-_LAT = ("lat", "lat_deg", "latitude", "latitude_deg")
-_LON = ("lon", "lon_deg", "lng", "long", "longitude", "longitude_deg")
+EXPECTED_UTM = ("easting", "northing", "utm_zone", "bearing_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
 POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")
 """A table that names one of these holds headings with what was heard there."""
+_TAG = ("tag", "tag_id", "tagid", "transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
+_FREQUENCY = ("frequency", "frequency_hz", "frequency_mhz", "freq")
 _SIGMA = ("sigma_deg", "sigma", "std_deg")
 
 
@@ -53,16 +75,16 @@ class RecordedBearings:
 @dataclass(frozen=True, slots=True)
 class _Columns:
     """Indices from 0. width: how many there are, None: as many as a row likes. noted: the last one is none of these,
-    and may hold anything."""
+    and may hold anything. in_degrees: the bearing's name says so, or the device that writes such files."""
 
-    lat: int
-    lon: int
+    places: Places
     bearing: int
     sigma: int | None
     tag: int | None
     at: int | None = None
     width: int | None = None
     noted: bool = False
+    in_degrees: bool = False
 
 
 def holds_bearings(table: Table) -> bool:
@@ -70,12 +92,12 @@ def holds_bearings(table: Table) -> bool:
     first = table.rows[0]
     if len(first.cells) == 10:
         return all(first.number(column) is not None for column in (2, 4, 5))
-    heads = (first.cells, *(comment.cells for comment in table.comments))
-    return any(
-        column_of(cells, *POWER) is None
-        and all(column_of(cells, *names) is not None for names in (_LAT, _LON, _BEARING))
-        for cells in heads
-    )
+    return any(column_of(head.cells, *POWER) is None and _names_all(head) for head in table.heads)
+
+
+def _names_all(head: Row) -> bool:
+    needed = ((*LATITUDE, *NORTHING), (*LONGITUDE, *EASTING), _BEARING)
+    return all(column_of(head.cells, *names) is not None for names in needed)
 
 
 def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
@@ -98,6 +120,8 @@ def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedB
             bearings.append(bearing)
     if not bearings:
         raise RecordingError(_nothing(table, columns, rows, remarks[0]))
+    if not columns.in_degrees:
+        _refuse_radians(table, columns.bearing, [row.number(columns.bearing) for row in rows])
     return RecordedBearings(tuple(bearings), tuple(remarks))
 
 
@@ -119,24 +143,53 @@ def _nothing(
 
 def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
     first = table.rows[0]
-    named = [row for row in (first, *table.comments) if column_of(row.cells, *_BEARING) is not None]
-    if named:
-        header = named[0]
-        places = [column_of(header.cells, *names) for names in (_LAT, _LON, _BEARING)]
-        if places[0] is None or places[1] is None or places[2] is None:
-            raise table.columns_unknown(header, *EXPECTED)
-        sigma, tag = column_of(header.cells, *_SIGMA), column_of(header.cells, "tag", "tag_id", "tagid")
-        last = max(k for k, name in enumerate(header.cells) if name)
-        noted = last not in (*places, sigma, tag)
-        columns = _Columns(places[0], places[1], places[2], sigma, tag, width=last + 1, noted=noted)
-        return columns, table.rows[1:] if header is first else table.rows
+    heads = [head for head in table.heads if column_of(head.cells, *_BEARING) is not None]
+    if heads:
+        header = next(filter(_names_all, heads), heads[0])
+        return _named(table, header), table.below(header)
     if len(first.cells) == 10:
-        return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0, at=9), table.rows
+        return _Columns(PlaceColumns(4, 5), bearing=2, sigma=None, tag=0, at=9, in_degrees=True), table.rows
     if len(first.cells) in (3, 4):
         if first.number(0) is None or _unlike_sigmas(table) or _counts_rows(table):
             raise table.columns_unknown(first, *EXPECTED)
-        return _Columns(lat=0, lon=1, bearing=2, sigma=3, tag=None), table.rows
+        return _Columns(PlaceColumns(0, 1), bearing=2, sigma=3, tag=None), table.rows
     raise table.columns_unknown(first, *EXPECTED)
+
+
+def _named(table: Table, header: Row) -> _Columns:
+    names, rows = header.cells, table.below(header)
+    bearing, sigma, tag = column_of(names, *_BEARING), column_of(names, *_SIGMA), column_of(names, *_TAG)
+    frequency = column_of(names, *_FREQUENCY)
+    if tag is None and frequency is not None and _tells_tags(rows, frequency):
+        tag = frequency
+    places = place_columns(names, rows, (bearing, sigma, tag))
+    if places is None or bearing is None:
+        in_utm = column_of(names, *EASTING) is not None
+        raise table.columns_unknown(header, *(EXPECTED_UTM if in_utm else EXPECTED))
+    last = max(k for k, name in enumerate(names) if name)
+    return _Columns(
+        places,
+        bearing,
+        sigma,
+        tag,
+        width=last + 1,
+        noted=last not in (*places.columns, bearing, sigma, tag),
+        in_degrees=plain_name(names[bearing]).endswith("_deg"),
+    )
+
+
+def _tells_tags(rows: Sequence[Row], column: int) -> bool:
+    """Rather than what was measured each time: each is there twice and more in the mean."""
+    return 2 * len({row.cells[column] for row in rows if column < len(row.cells)}) <= len(rows)
+
+
+def _refuse_radians(table: Table, column: int, cells: Sequence[float | None]) -> None:
+    """Raises RecordingError where no bearing is more than a turn's radians: several would all point north."""
+    bearings = [value for value in cells if value is not None and math.isfinite(value)]
+    least, most = min(bearings), max(bearings)
+    whole = all(value.is_integer() for value in bearings)
+    if len(bearings) >= FEWEST_BEARINGS and max(-least, most) <= LARGEST_RAD and not whole:
+        raise RecordingError(HeadingsInRadians(str(table.path), column + 1, least, most))
 
 
 def _counts_rows(table: Table) -> bool:
@@ -152,18 +205,12 @@ def _unlike_sigmas(table: Table) -> bool:
 
 
 def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float) -> RecordedBearing | CellUnusable:
-    needed: tuple[tuple[Quantity, int, float], ...] = (
-        ("latitude", columns.lat, 90.0),
-        ("longitude", columns.lon, 180.0),
-        ("bearing", columns.bearing, 360.0),
-    )
-    values: list[float] = []
-    for quantity, column, most in needed:
-        value = row.number(column)
-        if value is None or not abs(value) <= most:
-            return table.cell_unusable(row, column, quantity)
-        values.append(value)
-    lat, lon, bearing = values
+    place = columns.places.place(row)
+    if not isinstance(place, Place):
+        return table.cell_unusable(row, *place)
+    bearing = row.number(columns.bearing)
+    if bearing is None or not abs(bearing) <= 360.0:
+        return table.cell_unusable(row, columns.bearing, "bearing")
     sigma, given = default_sigma_deg, False
     if columns.sigma is not None and columns.sigma < len(row.cells) and row.cells[columns.sigma]:
         stated = row.number(columns.sigma)
@@ -173,4 +220,4 @@ def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float
     tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
     at_s = None if columns.at is None else row.number(columns.at)
     at_s = at_s if at_s is not None and EARLIEST_S < at_s < LATEST_S else None
-    return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None, given, at_s)
+    return RecordedBearing(row.line, place, bearing % 360.0, sigma, tag or None, given, at_s)

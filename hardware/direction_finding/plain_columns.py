@@ -15,6 +15,7 @@ from hardware.direction_finding.table_file import (
     number_of,
     plain_name,
 )
+from hardware.direction_finding.table_places import Places, place_columns
 from hardware.reasons.table import FileUnusable, TooManyCells
 
 Unit = Literal["decibels", "linear", "unnamed"]
@@ -24,6 +25,7 @@ _POWERS = ("power", "rssi", "level", "signal_strength", "snr", "leistung", "pege
 _DECIBELS = ("_db", "_dbm", "_dbw", "_dbfs")
 _LINEAR = ("_mw", "_w", "_uw", "_µw", "_nw", "_pw", "_lin", "_linear")
 
+_TIMES = ("at_s", "time_s", "time", "t", "timestamp")
 HEADING = tuple(f"{name}{unit}" for name in _HEADINGS for unit in ("_deg", ""))
 RADIANS = tuple(f"{name}_rad" for name in _HEADINGS)
 POWER = tuple(f"{name}{unit}" for name in _POWERS for unit in (*_DECIBELS, ""))
@@ -46,8 +48,7 @@ class Columns:
     radians: bool = False
     unit: Unit = "unnamed"
     time: int | None = None
-    lat: int | None = None
-    lon: int | None = None
+    places: Places | None = None
     frequency: int | None = None
     tag: int | None = None
     turns: tuple[int, ...] = ()
@@ -56,7 +57,7 @@ class Columns:
 def columns_of(table: Table) -> tuple[Columns, tuple[Row, ...]]:
     """The columns and the rows below their header. Raises RecordingError when they cannot be told apart."""
     header, rows = _header(table)
-    columns = _unnamed(table, rows) if header is None else _named(table, header)
+    columns = _unnamed(table, rows) if header is None else _named(table, header, rows)
     if not rows:
         raise RecordingError(FileUnusable(str(table.path), "empty"))
     return columns, rows
@@ -65,40 +66,45 @@ def columns_of(table: Table) -> tuple[Columns, tuple[Row, ...]]:
 def is_plain(table: Table) -> bool:
     """Whether a header names heading and power, and not what every table of UAV-RT's names."""
     return any(
-        column_of(row.cells, *HEADING, *RADIANS) is not None
-        and column_of(row.cells, *POWER, *LINEAR) is not None
-        and column_of(row.cells, "detection_status", "detect_status") is None
-        for row in (table.rows[0], *table.comments)
+        _names_both(head.cells) and column_of(head.cells, "detection_status", "detect_status") is None
+        for head in table.heads
     )
 
 
+def _names_both(cells: tuple[str, ...]) -> bool:
+    return column_of(cells, *HEADING, *RADIANS) is not None and column_of(cells, *POWER, *LINEAR) is not None
+
+
 def _header(table: Table) -> tuple[Row | None, tuple[Row, ...]]:
-    """The header row (a first line, or a comment, whose cells name a heading column) and the data rows."""
+    """The row or comment that names heading and power, or what else a header would be, and the data rows."""
     first = table.rows[0]
+    both = next((head for head in table.heads if _names_both(head.cells)), None)
+    if both is not None:
+        return both, table.below(both)
     if first.number(0) is None and any(cell and number_of(cell) is None for cell in first.cells):
         return first, table.rows[1:]
     named = next((c for c in table.comments if column_of(c.cells, *HEADING, *RADIANS) is not None), None)
     return named, table.rows
 
 
-def _named(table: Table, header: Row) -> Columns:
+def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
     names = header.cells
     heading = column_of(names, *HEADING, *RADIANS)
     power = column_of(names, *POWER, *LINEAR)
     if heading is None or power is None or [*map(plain_name, names)].count(plain_name(names[power])) > 1:
         raise table.columns_unknown(header, *EXPECTED)
-    turns = [column_of(names, name) for name in TURNS]
+    time, frequency = column_of(names, *_TIMES), column_of(names, "frequency_hz", "frequency")
+    tag, turns = column_of(names, "tag", "tag_id", "tagid"), [column_of(names, name) for name in TURNS]
     return Columns(
         heading=heading,
         power=power,
         width=max(k for k, name in enumerate(names) if name) + 1,
         radians=plain_name(names[heading]) in RADIANS,
         unit=_unit(plain_name(names[power])),
-        time=column_of(names, "at_s", "time_s", "time", "t", "timestamp"),
-        lat=column_of(names, "lat", "lat_deg", "latitude", "latitude_deg"),
-        lon=column_of(names, "lon", "lon_deg", "longitude", "longitude_deg"),
-        frequency=column_of(names, "frequency_hz", "frequency"),
-        tag=column_of(names, "tag", "tag_id", "tagid"),
+        time=time,
+        places=place_columns(names, rows, (heading, power, time, frequency, tag, *turns)),
+        frequency=frequency,
+        tag=tag,
         turns=tuple(column for column in turns if column is not None),
     )
 

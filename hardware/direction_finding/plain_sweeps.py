@@ -12,6 +12,7 @@ from hardware.direction_finding.plain_columns import Columns, columns_of
 from hardware.direction_finding.plain_turns import ELSEWHERE_M, HeardAt, place_of, turns_in
 from hardware.direction_finding.plain_units import decibels_doubted, refuse_radians
 from hardware.direction_finding.table_file import RecordingError, Row, Table, some_of
+from hardware.direction_finding.table_places import Places
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import (
     NothingUsable,
@@ -63,7 +64,7 @@ def _heard(table: Table, columns: Columns, rows: Sequence[Row]) -> tuple[list[He
     refuse_radians(file, columns, [heading for _, heading, _ in good])
     doubt = decibels_doubted(file, columns, [power for _, _, power in good])
     heard = [
-        HeardAt(row, _value(row, columns.time, float(k)), heading % 360.0, power, _place(row, columns))
+        HeardAt(row, _value(row, columns.time, float(k)), heading % 360.0, power, _place(row, columns.places))
         for k, (row, heading, power) in enumerate(good)
     ]
     return heard, remarks if doubt is None else [doubt, *remarks]
@@ -115,11 +116,9 @@ def _tag(row: Row, columns: Columns) -> str:
     return row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else ""
 
 
-def _place(row: Row, columns: Columns) -> Place | None:
-    if columns.lat is None or columns.lon is None:
-        return None
-    lat, lon = _value(row, columns.lat, math.inf), _value(row, columns.lon, math.inf)
-    return Place(lat, lon) if abs(lat) <= 90.0 and abs(lon) <= 180.0 else None
+def _place(row: Row, columns: Places | None) -> Place | None:
+    place = None if columns is None else columns.place(row)
+    return place if isinstance(place, Place) else None
 
 
 def _value(row: Row, column: int | None, otherwise: float) -> float:

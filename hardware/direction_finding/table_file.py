@@ -1,5 +1,6 @@
-"""Text tables from the field: comma, semicolon or tab separated, `#` comments, any line ends, lines numbered; between
-semicolons or tabs a decimal comma, as spreadsheets write it in half of the world. Numbers may carry their unit."""
+"""Text tables from the field: comma, semicolon or tab separated, `#` or `%` comments, any line ends, lines numbered;
+between semicolons or tabs a decimal comma, as spreadsheets write it in half of the world. Numbers may carry their
+unit."""
 
 from __future__ import annotations
 
@@ -8,9 +9,17 @@ import csv
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
-from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnreadable, FileUnusable, Quantity
+from hardware.reasons.table import (
+    CellUnusable,
+    ColumnsUnknown,
+    FileUnreadable,
+    FileUnusable,
+    Quantity,
+    RemarksNotListed,
+)
 from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
 
@@ -19,7 +28,10 @@ _BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
 _WHOLE = re.compile(r"[+-]?\d+")
 _DEGREES = re.compile(r"(?<=[\d.])\s*(?:Â?[°º]|deg|degrees|Grad)$", re.IGNORECASE)
 _DECIBELS = re.compile(r"(?<=[\d.])\s*dB(?:m|W|FS|i|d|[µu]V)?$", re.IGNORECASE)
+_HEMISPHERES = "NSEWnsew "
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+_SEPARATOR_TOLD = re.compile(r"\"?sep=.\"?", re.IGNORECASE)
+"""First line of what Excel writes; which one it is shows in the others."""
 _LINE_ENDS = re.compile(r"\r\n|\r|\n")
 _MINUS = str.maketrans("\u2212\u2013", "--")
 """As typesetters write it."""
@@ -28,6 +40,10 @@ LARGEST = 1e100
 """Of any number: its square is finite, too."""
 LONGEST_CELL, MOST_NAMED = 60, 20
 """Characters of a cell that a reason shows, and how many tags it names."""
+MOST_REMARKS = 50
+"""Of one file, one by one: those of an imported one are a fact of the mission, which every page that shows it loads."""
+MOST_TITLES = 20
+"""Lines above a table, and its header."""
 
 
 class RecordingError(ReasonedError):
@@ -76,6 +92,15 @@ class Table:
     rows: tuple[Row, ...]
     comments: tuple[Row, ...]
 
+    @property
+    def heads(self) -> tuple[Row, ...]:
+        """What may be a header: the first row and, below titles, others that are no data; and comments."""
+        return (*(tuple(takewhile(_is_no_data, self.rows[:MOST_TITLES])) or self.rows[:1]), *self.comments)
+
+    def below(self, header: Row) -> tuple[Row, ...]:
+        """The data rows below one of its heads; all of them below a comment."""
+        return self.rows if header in self.comments else tuple(row for row in self.rows if row.line > header.line)
+
     def cell_unusable(self, row: Row, column: int, quantity: Quantity) -> CellUnusable:
         """Why a row is left out; `column` from 0."""
         cell = row.cells[column][:LONGEST_CELL] if column < len(row.cells) else ""
@@ -84,6 +109,11 @@ class Table:
     def columns_unknown(self, row: Row, *expected: str) -> RecordingError:
         """row: the header, or the first one."""
         return RecordingError(ColumnsUnknown(str(self.path), row.line, len(row.cells), expected))
+
+
+def _is_no_data(row: Row) -> bool:
+    """A title may hold a date or a number."""
+    return sum(number_of(cell) is not None for cell in row.cells) < 2
 
 
 def read_table(path: Path | str) -> Table:
@@ -101,8 +131,10 @@ def read_table(path: Path | str) -> Table:
     for number, line in enumerate(lines_of(text), start=1):
         stripped = line.rstrip().strip(" ") if "\t" in line.strip() else line.strip()
         try:
-            if line.lstrip().startswith("#"):
-                comments.append(Row(number, cells_of(stripped.lstrip().lstrip("#"))))
+            if line.lstrip().startswith(("#", "%")):
+                comments.append(Row(number, cells_of(stripped.lstrip().lstrip("#%"))))
+            elif number == 1 and _SEPARATOR_TOLD.fullmatch(stripped):
+                continue
             elif line.strip().strip(",;"):
                 rows.append(Row(number, cells_of(stripped)))
         except csv.Error as error:  # a cell of more than 128 kB, for one
@@ -170,7 +202,7 @@ def cells_of(line: str) -> tuple[str, ...]:
     """Split at semicolons or tabs when every comma between them is a decimal one, or a note's, at commas else."""
     for delimiter in (";", "\t"):
         cells = _split(line, delimiter)
-        whole = ["," not in cell or _DECIMAL_COMMA.fullmatch(_bare(cell)) is not None for cell in cells]
+        whole = ["," not in cell or _DECIMAL_COMMA.fullmatch(_bare(cell.strip(_HEMISPHERES))) for cell in cells]
         notes = [cell for cell, is_whole in zip(cells, whole, strict=True) if not is_whole]
         if len(cells) > 1 and all(whole[:2]) and all(map(_is_note, notes)):
             return cells
@@ -199,6 +231,12 @@ def some_of(names: Iterable[str]) -> tuple[str, ...]:
     """In their order, as many and as much of each as a reason shows."""
     shown = sorted(set(names))
     return (*(name[:LONGEST_CELL] for name in shown[:MOST_NAMED]), *(("...",) if len(shown) > MOST_NAMED else ()))
+
+
+def listed(path: Path | str, remarks: Sequence[RecordingReason]) -> tuple[RecordingReason, ...]:
+    """The first ones, and how many more there are."""
+    more = len(remarks) - MOST_REMARKS
+    return (*remarks[:MOST_REMARKS], *((RemarksNotListed(str(path), more),) if more > 0 else ()))
 
 
 def plain_name(name: str) -> str:

@@ -10,6 +10,7 @@ from planner.reason import Words
 Quantity = Literal[
     "latitude",
     "longitude",
+    "utm",
     "bearing",
     "sigma",
     "time",
@@ -92,7 +93,8 @@ class HeadingsInRadians:
     code: Literal["headings_in_radians"] = "headings_in_radians"
 
     english: ClassVar[Words] = Words(
-        "The headings in column {column} of {file} ({least:2} to {most:2}) seem to be radians.", "Write degrees."
+        "The angles in column {column} of {file} ({least:2} to {most:2}) seem to be radians.",
+        "Write degrees, and name the column heading_deg or bearing_deg.",
     )
 
 
@@ -128,6 +130,7 @@ class CellUnusable:
     english: ClassVar[Words] = Words(
         'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?'
         "kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|"
+        "utm=UTM value (zone 22N)|"
         "bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}."
     )
 

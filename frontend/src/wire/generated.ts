@@ -2542,7 +2542,7 @@ export interface components {
             column: number;
             cell: string;
             /** @enum {string} */
-            quantity: "latitude" | "longitude" | "bearing" | "sigma" | "time" | "heading" | "power" | "frequency" | "snr" | "attitude" | "noise_psd" | "kind_of_row";
+            quantity: "latitude" | "longitude" | "utm" | "bearing" | "sigma" | "time" | "heading" | "power" | "frequency" | "snr" | "attitude" | "noise_psd" | "kind_of_row";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

@@ -9,7 +9,7 @@ from refusals import refusing
 
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearings, bearings_in
 from hardware.direction_finding.table_file import RecordingError, read_table
-from hardware.reasons.table import CellUnusable, FileUnusable, Quantity, TooManyCells
+from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnusable, HeadingsInRadians, Quantity, TooManyCells
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -44,6 +44,11 @@ def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
         "\ufefflat;lon;bearing_deg;sigma_deg\r\n50,1;7,2;10,0;3\r\n50,2;7,3;20;\r\n",
         "50,1\t7,2\t10,0\t3\n50.2\t7.3\t20\n",
         "bearing,lat,lon,sigma,note\n10,50.1,7.2,3,hill;1,5\n20,50.2,7.3,,a;b\n",
+        "sep=;\nlat;lon;bearing;sigma\n50,1 N;7,2 E;10;3\n50,2 N;7,3 E;20;\n",
+        "lat,N/S,lon,E/W,bearing_deg,sigma\n50.1,N,7.2,E,10,3\n50.2,N,7.3,E,20,\n",
+        "Beacon on the ridge\nTaken, on foot, 2026\n\nlat,lon,bearing,sigma\n50.1,7.2,10,3\n50.2,7.3,20,\n",
+        "% lat, lon, bearing_deg, sigma_deg\n50.1,7.2,10,3\n50.2,7.3,20\n",
+        "# bearing, as the compass has it\n# lat, lon, bearing_deg, sigma_deg\n50.1,7.2,10,3\n50.2,7.3,20\n",
     ],
 )
 def test_plain_csv_with_and_without_header_and_sigma(tmp_path: Path, text: str) -> None:
@@ -62,6 +67,8 @@ def test_plain_csv_with_and_without_header_and_sigma(tmp_path: Path, text: str) 
         ("50.1,7.2,3,-4", 4, "-4", "sigma"),
         ("50.1,7.2", 3, "", "bearing"),
         ("nan,7.2,3", 1, "nan", "latitude"),
+        ("0,0,3", 1, "0", "latitude"),
+        ("50.1,7.2O,3", 2, "7.2O", "longitude"),
     ],
 )
 def test_bad_rows_are_named_and_left_out(tmp_path: Path, row: str, column: int, cell: str, quantity: Quantity) -> None:
@@ -98,6 +105,18 @@ def test_rows_with_more_numbers_than_columns_are_refused(tmp_path: Path, more: s
         read_bearings(path)
 
 
+@pytest.mark.parametrize("name", ["bearing", "azimuth"])
+def test_bearings_that_seem_to_be_radians_are_refused_unless_named_as_degrees(tmp_path: Path, name: str) -> None:
+    rows = "50.1,7.2,0.785\n50.2,7.3,5.5\n50.3,7.2,3.1\n"
+    for header in (f"lat,lon,{name}\n", ""):
+        path = written(tmp_path, header + rows)
+        with refusing(HeadingsInRadians(str(path), 3, 0.785, 5.5), RecordingError):
+            read_bearings(path)
+    assert len(read_bearings(written(tmp_path, f"lat,lon,{name}_deg\n{rows}")).bearings) == 3
+    for all_north in ("50.1,7.2,0.785\n50.2,7.3,5.5\n", "50.1,7.2,1\n50.2,7.3,5\n50.3,7.2,3\n"):
+        assert read_bearings(written(tmp_path, all_north)).bearings[1].bearing_deg in (5.0, 5.5)
+
+
 @pytest.mark.parametrize(
     "text", ["lat,lon,azimuth,power_db\n50.1,7.2,10,-60\n", "10,50.1,7.1,140\n7,2,146e6,0,0,20\n11,50.1,7.1,140\n"]
 )
@@ -111,3 +130,32 @@ def test_sweeps_are_no_bearings(tmp_path: Path, text: str) -> None:
 def test_a_bearing_of_a_tag_that_is_a_command_elsewhere_is_one(tmp_path: Path, tag: str) -> None:
     row = f"{tag},turn.csv,137.6,0.06,35.2,-111.7,9.6,2107.2,1684766889.8,1684767153.8\n"
     assert read_bearings(written(tmp_path, row)).bearings[0].bearing_deg == 137.6
+
+
+def test_biologists_files_in_utm_hold_the_bearings_of_each_frequency(tmp_path: Path) -> None:
+    """The columns of a snowshoe hare's VHF tracking (see `bearing_scatter.py`)."""
+    rows = [
+        "149.142,A6704,1,22N,279215,5359442,342,2017-07-13,16:40:31",
+        "149.142,A6704,2,22N,278939,5359617,79,2017-07-13,17:14:17",
+        "149.394,A3707,1,22N,279212,5359446,22,2017-07-13,17:42:52",
+        "149.394,A3707,2,22N,278951,5359709,116,2017-07-13,18:10:13",
+        "149.394,A3707,3,22N,278647,5359881,,2017-07-13,18:57:09",
+    ]
+    header = "Frequency,EarTag,Point,UTMZone,Easting,Northing,Azimuth,Date,Time_O"
+    path = written(tmp_path, "\n".join([header, *rows]))
+    recorded = read_bearings(path)
+    assert [one.tag for one in recorded.bearings] == ["149.142", "149.142", "149.394", "149.394"]
+    assert [one.bearing_deg for one in recorded.bearings] == [342.0, 79.0, 22.0, 116.0]
+    assert recorded.bearings[0].place.lat == pytest.approx(48.349526, abs=1e-6)
+    assert recorded.remarks == (CellUnusable(str(path), 6, 7, "", "bearing"),)
+    without = written(tmp_path, "\n".join([header, *rows]).replace("UTMZone", "Line"))
+    with refusing(
+        ColumnsUnknown(str(without), 1, 9, ("easting", "northing", "utm_zone", "bearing_deg")), RecordingError
+    ):
+        read_bearings(without)
+
+
+def test_a_frequency_that_is_measured_each_time_names_no_tag(tmp_path: Path) -> None:
+    rows = "50.1,7.2,10,148.5201\n50.2,7.3,20,148.5203\n50.3,7.2,30,148.5201\n"
+    recorded = read_bearings(written(tmp_path, f"lat,lon,bearing_deg,frequency_mhz\n{rows}"))
+    assert {one.tag for one in recorded.bearings} == {None}

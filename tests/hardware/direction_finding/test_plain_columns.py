@@ -10,6 +10,7 @@ from refusals import refusing
 
 from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError
+from hardware.readings import Place
 from hardware.reasons.table import ColumnsUnknown, RowLeftOut, TooManyCells
 
 ROWS = [(float(heading) + 0.25, -60.5 - heading / 20) for heading in range(0, 360, 10)]
@@ -44,6 +45,31 @@ def test_names_are_read_with_their_unit_in_any_brackets(tmp_path: Path, header: 
         assert recorded.sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
         assert recorded.sweep.power_db.tolist() == [power for _, power in ROWS]
         assert recording.remarks == ()
+
+
+@pytest.mark.parametrize(
+    "above",
+    [
+        ["sep=,", "heading_deg,power_db"],
+        ["Turn at the bridge", "Receiver 3, 2026, gain 20 dB", "", "heading_deg,power_db"],
+        ["% heading_deg, power_db"],
+        ["# heading, as the compass has it", "heading_deg,power_db"],
+        ["# heading, as the compass has it", "# heading_deg,power_db"],
+    ],
+)
+def test_a_header_is_found_below_titles_and_remarks(tmp_path: Path, above: list[str]) -> None:
+    path = file_of(tmp_path, *above, *(f"{heading},{power}" for heading, power in ROWS))
+    recording = read_recording(path)
+    assert recording.sweeps[0].sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
+    assert recording.remarks == ()
+
+
+def test_places_of_a_sweep_are_on_the_hemisphere_that_is_written(tmp_path: Path) -> None:
+    lines = [f"{heading},{power},33.9,S,18.4,E" for heading, power in ROWS]
+    (recorded,) = read_recording(file_of(tmp_path, "heading_deg,power_db,lat,N/S,lon,E/W", *lines)).sweeps
+    assert (recorded.place_known, recorded.sweep.position) == (True, Place(-33.9, 18.4))
+    (unknown,) = read_recording(file_of(tmp_path, "heading,rssi,lat,lon", *(f"{h},{p},0,0" for h, p in ROWS))).sweeps
+    assert not unknown.place_known
 
 
 def test_a_table_with_a_heading_and_a_bearing_is_turned_by_the_heading(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ export const recording = {
     "Haben Zahlen ein Dezimalkomma, die Spalten mit Semikolons trennen; sonst jede Spalte in einer Kopfzeile nennen.",
   ],
   cell_unusable: [
-    "Zeile {line} von {file} ist ausgelassen: „{cell}“ in Spalte {column} ist {quantity?latitude=keine brauchbare Breite|longitude=keine brauchbare Länge|bearing=keine brauchbare Peilung|sigma=kein brauchbarer Peilfehler|time=keine brauchbare Zeit|heading=kein brauchbarer Kurs|power=keine brauchbare Leistung|frequency=keine brauchbare Frequenz|snr=kein brauchbares SNR|attitude=keine brauchbare Lage|noise_psd=keine brauchbare Rauschdichte|kind_of_row=keine Zeilenart (7, 10 oder 11)}.",
+    "Zeile {line} von {file} ist ausgelassen: „{cell}“ in Spalte {column} ist {quantity?latitude=keine brauchbare Breite|longitude=keine brauchbare Länge|utm=kein brauchbarer UTM-Wert (Zone 22N)|bearing=keine brauchbare Peilung|sigma=kein brauchbarer Peilfehler|time=keine brauchbare Zeit|heading=kein brauchbarer Kurs|power=keine brauchbare Leistung|frequency=keine brauchbare Frequenz|snr=kein brauchbares SNR|attitude=keine brauchbare Lage|noise_psd=keine brauchbare Rauschdichte|kind_of_row=keine Zeilenart (7, 10 oder 11)}.",
   ],
   row_left_out: [
     "Zeile {line} von {file} ist ausgelassen: {why?columns=Sie hat zu wenige Spalten|not_open=Sie beendet eine Drehung, die nie begann|two_offsets=Die Spalten 20 und 21 nennen beide einen Antennenversatz|wide=Sie hat mehr Zahlen, als es Spalten gibt}.",
@@ -52,7 +52,10 @@ export const recording = {
     "Die Drehung ab Zeile {line} von {file} entstand an Orten, die {apart_m} auseinanderliegen.",
     "Mehrere Drehungen in einer Spalte namens sweep nummerieren.",
   ],
-  headings_in_radians: ["Die Kurse in Spalte {column} von {file} ({least:2} bis {most:2}) scheinen Radiant zu sein.", "Grad schreiben."],
+  headings_in_radians: [
+    "Die Winkel in Spalte {column} von {file} ({least:2} bis {most:2}) scheinen Radiant zu sein.",
+    "Grad schreiben und die Spalte heading_deg oder bearing_deg nennen.",
+  ],
   power_linear: [
     "Die Leistung in Spalte {column} von {file} ({least} bis {most}) ist {by?name=dem Namen|values=den Werten} nach linear.",
     "Dezibel schreiben und die Spalte power_db nennen.",

@@ -1,0 +1,3 @@
+"""What Crossfix calls of utm 0.9. Angles in degrees, lengths in metres."""
+
+def to_latlon(easting: float, northing: float, zone_number: int, *, northern: bool) -> tuple[float, float]: ...
