@@ -76,7 +76,7 @@ class Row:
         return self._float(column, _DECIBELS)
 
     def _float(self, column: int, unit: re.Pattern[str]) -> float | None:
-        number = _float(unit.sub("", self.cells[column])) if column < len(self.cells) else None
+        number = _number(self.cells[column], unit) if column < len(self.cells) else None
         return None if number is None or abs(number) > LARGEST else number
 
     def numbers_beyond(self, width: int) -> bool:
@@ -183,30 +183,43 @@ def lines_of(text: str) -> list[str]:
 def number_of(cell: str) -> float | None:
     """The cell as a float, with a decimal point or a decimal comma, with or without degrees or decibels behind it; None
     when it is no number."""
-    return _float(_bare(cell))
+    return _number(cell, _DEGREES, _DECIBELS)
 
 
-def _bare(cell: str) -> str:
-    return _DECIBELS.sub("", _DEGREES.sub("", cell)).translate(_MINUS)
-
-
-def _float(cell: str) -> float | None:
-    plain = cell.translate(_MINUS)
+def _number(cell: str, *units: re.Pattern[str]) -> float | None:
+    """With one of these units behind it or none."""
+    try:
+        return float(cell)
+    except ValueError:
+        plain = _bare(cell, *units)
     try:
         return float(plain.replace(",", ".") if _DECIMAL_COMMA.fullmatch(plain) else plain)
     except ValueError:
         return None
 
 
+def _bare(cell: str, *units: re.Pattern[str]) -> str:
+    for unit in units:
+        cell = unit.sub("", cell)
+    return cell.translate(_MINUS)
+
+
 def cells_of(line: str) -> tuple[str, ...]:
     """Split at semicolons or tabs when every comma between them is a decimal one, or a note's, at commas else."""
     for delimiter in (";", "\t"):
+        if delimiter not in line:
+            continue
         cells = _split(line, delimiter)
-        whole = ["," not in cell or _DECIMAL_COMMA.fullmatch(_bare(cell.strip(_HEMISPHERES))) for cell in cells]
+        whole = ["," not in cell or _is_decimal(cell.strip(_HEMISPHERES)) for cell in cells]
         notes = [cell for cell, is_whole in zip(cells, whole, strict=True) if not is_whole]
         if len(cells) > 1 and all(whole[:2]) and all(map(_is_note, notes)):
             return cells
     return _split(line, ",")
+
+
+def _is_decimal(cell: str) -> bool:
+    """Whether it has a decimal comma."""
+    return _DECIMAL_COMMA.fullmatch(_bare(cell, _DEGREES, _DECIBELS)) is not None
 
 
 def _is_note(cell: str) -> bool:
@@ -224,7 +237,8 @@ def commas_in_numbers(rows: Sequence[Row]) -> bool:
 
 def _split(line: str, delimiter: str) -> tuple[str, ...]:
     cells = next(csv.reader([line], delimiter=delimiter))
-    return tuple(_CONTROL.sub("", cell.strip().strip("'\"")) for cell in cells)
+    stripped = (cell.strip().strip("'\"") for cell in cells)
+    return tuple(cell if cell.isprintable() else _CONTROL.sub("", cell) for cell in stripped)
 
 
 def some_of(names: Iterable[str]) -> tuple[str, ...]:

@@ -137,9 +137,11 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
     """None where they are missing, too many, or of no hemisphere or two."""
     if column >= len(row.cells):
         return None
-    signs, cell = _SIGNS[axis], row.cells[column].upper()
-    told = [end for end in {cell[:1], cell[-1:]} if end in signs]
-    value = number_of(cell.strip("".join(signs)).strip() if told else cell)
+    signs, cell, told = _SIGNS[axis], row.cells[column].upper(), list[str]()
+    value = number_of(cell)
+    if value is None:
+        told = [end for end in {cell[:1], cell[-1:]} if end in signs]
+        value = number_of(cell.strip("".join(signs)).strip())
     if letter is not None:
         told.append(row.cells[letter].upper() if letter < len(row.cells) else "")
     if value is None or len(told) > 1 or (told and (value < 0.0 or told[0] not in signs)):

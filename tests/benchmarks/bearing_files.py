@@ -66,6 +66,8 @@ KINDS = (
     Kind("four, errors of their own", 4, 5000.0, 1.5, stated_deg=1.5),
     Kind("nothing stated, errors of their own", 12, 5000.0, 4.0),
     Kind("nothing stated, 5.3 degrees in common, 8 % wrong", 5, 250.0, 5.3, 5.3, 0.08),
+    Kind("nothing stated, hand-held, three", 3, 300.0, 18.0, 5.0, 0.06),
+    Kind("nothing stated, hand-held, five", 5, 300.0, 18.0, 5.0, 0.06),
 )
 
 
