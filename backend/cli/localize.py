@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import fields, replace
+from datetime import UTC, datetime
 from pathlib import Path
 from statistics import fmean
 from typing import Annotated, Any, get_args
@@ -20,6 +21,7 @@ from backend.settings import settings_of
 from backend.spec import ErrorModel
 from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, bearings_in
+from hardware.direction_finding.heading import HeadingError, declination_deg
 from hardware.direction_finding.table_file import RecordingError, listed, read_table
 from hardware.frame import LocalFrame, compass_to_angle, middle_of
 from hardware.readings import Place
@@ -58,7 +60,8 @@ def localize(
     file: Annotated[
         Path,
         typer.Argument(
-            help="UAV-RT bearing file, CSV with columns lat, lon, bearing_deg[, sigma_deg], or a KrakenSDR's log."
+            help="UAV-RT bearing file, CSV with columns lat, lon (or easting, northing, utm_zone), bearing_deg[, "
+            "sigma_deg], or a KrakenSDR's log."
         ),
     ],
     area: Annotated[
@@ -105,6 +108,13 @@ def localize(
         float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
     ] = 10.0,
     tag: Annotated[str | None, typer.Option(help="Use this tag's bearings when the file holds several tags.")] = None,
+    magnetic: Annotated[
+        datetime | None,
+        typer.Option(
+            formats=["%Y-%m-%d"],
+            help="The bearings are a magnetic compass's, of this day: made true by the World Magnetic Model.",
+        ),
+    ] = None,
     estimator: Annotated[
         str,
         typer.Option(
@@ -124,6 +134,7 @@ def localize(
         remark(*map(sentence_of, listed(file, recorded.remarks)))
         whole = kraken is not None and tag is None  # of several stations
         chosen = list(recorded.bearings) if whole else _of_tag(file, recorded.bearings, tag)
+        chosen = chosen if magnetic is None else [_made_true(one, magnetic) for one in chosen]
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
         joint = _joint(errors)
@@ -133,7 +144,7 @@ def localize(
             chosen, expected = _with_sigma(chosen, scatter.sigma_deg), scatter.outlier_probability
         rate = expected if outliers is None else outliers
         answer = _localize(chosen, frame, region, rate, threshold, _known_estimator(estimator), joint)
-    except (RecordingError, PlannerError, ValueError) as error:
+    except (RecordingError, HeadingError, PlannerError, ValueError) as error:
         stop(error)
     if json_:
         print_json(answer)
@@ -162,6 +173,12 @@ def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) 
     if not chosen:
         raise ValueError(f"{file} holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
     return chosen
+
+
+def _made_true(one: RecordedBearing, day: datetime) -> RecordedBearing:
+    """Raises HeadingError."""
+    declination = declination_deg(one.place, day.replace(tzinfo=UTC).timestamp())
+    return replace(one, bearing_deg=(one.bearing_deg + declination) % 360.0)
 
 
 def _scatter(bearings: list[RecordedBearing], frame: LocalFrame, region: Region) -> BearingScatter:

@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 import typer
+import utm
 from shapely.geometry import Point, shape
 from typer.testing import CliRunner
 
 from backend.cli.localize import localize
 from backend.search.source_priors import unknown_errors
+from hardware.direction_finding.heading import declination_deg
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from planner.belief.estimate import estimate
@@ -68,6 +71,36 @@ def test_bearings_on_both_sides_of_the_dateline_cross_there(tmp_path: Path) -> N
     path.write_text("lat,lon,bearing_deg\n0,179.999,45\n0,-179.995,315\n")
     answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
     assert answer["estimate"]["lon"] == pytest.approx(-179.998, abs=1e-3)
+
+
+def test_bearings_of_a_magnetic_compass_are_made_true(tmp_path: Path) -> None:
+    places = ((0, 0), (250, 0), (100, 350), (-80, 150))
+    east_deg = declination_deg(FRAME.origin, datetime(2020, 6, 1, tzinfo=UTC).timestamp())
+    rows = [(x, y, bearing_to(x, y, 120.0, 140.0) - east_deg) for x, y in places]
+    path = written(tmp_path, rows)
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--json", "--magnetic", "2020-06-01"]).stdout)
+    true = written(tmp_path, [(x, y, bearing_to(x, y, 120.0, 140.0)) for x, y in places])
+    expected = json.loads(CliRunner().invoke(APP, [str(true), "--json"]).stdout)
+    assert abs(east_deg) > 2.0
+    for axis in ("lat", "lon"):
+        assert answer["estimate"][axis] == pytest.approx(expected["estimate"][axis], abs=1e-5)
+    refused = CliRunner().invoke(APP, [str(path), "--magnetic", "1999-06-01"])
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "1999" in refused.stderr
+
+
+def test_places_in_utm_are_answered_as_those_in_degrees(tmp_path: Path) -> None:
+    rows = [(x, y, bearing_to(x, y, 120.0, 140.0)) for x, y in ((0, 0), (250, 0), (100, 350), (-80, 150))]
+    degrees, metres = written(tmp_path, rows), tmp_path / "utm.csv"
+    lines = ["Easting;Northing;UTM Zone;Azimuth;sigma_deg"]
+    for east, north, bearing in rows:
+        place = FRAME.to_geo(east, north)
+        e, n, zone, _ = utm.from_latlon(place.lat, place.lon)
+        lines.append(f"{e:.2f};{n:.2f};{zone}N;{bearing};4".replace(".", ","))
+    metres.write_text("\n".join(lines))
+    answers = [json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout) for path in (degrees, metres)]
+    for axis in ("lat", "lon"):
+        assert answers[0]["estimate"][axis] == pytest.approx(answers[1]["estimate"][axis], abs=1e-6)
 
 
 def test_one_bearing_is_answered_honestly(tmp_path: Path) -> None:
