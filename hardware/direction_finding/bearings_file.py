@@ -179,8 +179,8 @@ def _named(table: Table, header: Row) -> _Columns:
 
 
 def _tells_tags(rows: Sequence[Row], column: int) -> bool:
-    """Rather than what was measured each time: each is there twice and more in the mean."""
-    return 2 * len({row.cells[column] for row in rows if column < len(row.cells)}) <= len(rows)
+    """Rather than one tag's, or what was measured each time: of several each is there twice and more in the mean."""
+    return 2 <= len({row.cells[column] for row in rows if column < len(row.cells)}) <= len(rows) / 2
 
 
 def _refuse_radians(table: Table, column: int, cells: Sequence[float | None]) -> None:

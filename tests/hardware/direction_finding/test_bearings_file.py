@@ -155,7 +155,10 @@ def test_biologists_files_in_utm_hold_the_bearings_of_each_frequency(tmp_path: P
         read_bearings(without)
 
 
-def test_a_frequency_that_is_measured_each_time_names_no_tag(tmp_path: Path) -> None:
-    rows = "50.1,7.2,10,148.5201\n50.2,7.3,20,148.5203\n50.3,7.2,30,148.5201\n"
+@pytest.mark.parametrize("frequencies", [("148.5201", "148.5203", "148.5201"), ("148.52", "148.52", "148.52")])
+def test_a_frequency_that_is_measured_or_the_only_one_names_no_tag(
+    tmp_path: Path, frequencies: tuple[str, ...]
+) -> None:
+    rows = "\n".join(f"50.{k},7.2,{k}0,{frequency}" for k, frequency in enumerate(frequencies, start=1))
     recorded = read_bearings(written(tmp_path, f"lat,lon,bearing_deg,frequency_mhz\n{rows}"))
     assert {one.tag for one in recorded.bearings} == {None}
