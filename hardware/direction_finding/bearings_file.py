@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 
+from hardware.direction_finding.plain_columns import names_power
 from hardware.direction_finding.plain_units import LARGEST_RAD
-from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, plain_name
+from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, number_of, plain_name
 from hardware.direction_finding.table_places import (
     EASTING,
     LATITUDE,
@@ -42,7 +42,9 @@ _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
 POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")
 """A table that names one of these holds headings with what was heard there."""
 _TAG = ("tag", "tag_id", "tagid", "transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
-_FREQUENCY = ("frequency", "frequency_hz", "frequency_mhz", "freq")
+_FREQUENCY = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
+SAME_FREQUENCY = 2e-5
+"""Of a frequency: a tag's own drifts by so much (3 kHz of 150 MHz); others are 5 kHz away and more."""
 _SIGMA = ("sigma_deg", "sigma", "std_deg")
 
 
@@ -75,7 +77,8 @@ class RecordedBearings:
 @dataclass(frozen=True, slots=True)
 class _Columns:
     """Indices from 0. width: how many there are, None: as many as a row likes. noted: the last one is none of these,
-    and may hold anything. in_degrees: the bearing's name says so, or the device that writes such files."""
+    and may hold anything. tags: by what cells of the tag's column say; empty: as they say. in_degrees: the bearing's
+    name says so, or the device that writes such files."""
 
     places: Places
     bearing: int
@@ -84,20 +87,25 @@ class _Columns:
     at: int | None = None
     width: int | None = None
     noted: bool = False
+    tags: Mapping[str, str] = field(default_factory=dict[str, str])
     in_degrees: bool = False
 
 
 def holds_bearings(table: Table) -> bool:
     """Rather than headings with power: its columns are named, or it has the ten of UAV-RT."""
+    if any(column_of(head.cells, *POWER) is None and _names_all(head) for head in table.heads):
+        return True
     first = table.rows[0]
-    if len(first.cells) == 10:
-        return all(first.number(column) is not None for column in (2, 4, 5))
-    return any(column_of(head.cells, *POWER) is None and _names_all(head) for head in table.heads)
+    return len(first.cells) == 10 and all(first.number(column) is not None for column in (2, 4, 5))
 
 
 def _names_all(head: Row) -> bool:
-    needed = ((*LATITUDE, *NORTHING), (*LONGITUDE, *EASTING), _BEARING)
-    return all(column_of(head.cells, *names) is not None for names in needed)
+    in_utm = not names_power(head.cells) and _has(head, EASTING, NORTHING)
+    return _has(head, _BEARING) and (in_utm or _has(head, LATITUDE, LONGITUDE))
+
+
+def _has(head: Row, *columns: Sequence[str]) -> bool:
+    return all(column_of(head.cells, *names) is not None for names in columns)
 
 
 def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
@@ -108,6 +116,7 @@ def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedB
     if not rows:
         raise RecordingError(FileUnusable(str(table.path), "empty"))
     bearings: list[RecordedBearing] = []
+    used: list[float] = []
     remarks: list[CellUnusable | RowLeftOut] = []
     for row in rows:
         if _is_wide(row, columns):
@@ -118,10 +127,11 @@ def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedB
             remarks.append(bearing)
         else:
             bearings.append(bearing)
+            used.append(row.number(columns.bearing) or 0.0)
     if not bearings:
         raise RecordingError(_nothing(table, columns, rows, remarks[0]))
     if not columns.in_degrees:
-        _refuse_radians(table, columns.bearing, [row.number(columns.bearing) for row in rows])
+        _refuse_radians(table, columns.bearing, used)
     return RecordedBearings(tuple(bearings), tuple(remarks))
 
 
@@ -158,15 +168,13 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
 
 def _named(table: Table, header: Row) -> _Columns:
     names, rows = header.cells, table.below(header)
-    bearing, sigma, tag = column_of(names, *_BEARING), column_of(names, *_SIGMA), column_of(names, *_TAG)
-    frequency = column_of(names, *_FREQUENCY)
-    if tag is None and frequency is not None and _tells_tags(rows, frequency):
-        tag = frequency
-    places = place_columns(names, rows, (bearing, sigma, tag))
+    bearing, sigma = column_of(names, *_BEARING), column_of(names, *_SIGMA)
+    places = place_columns(names, rows)
     if places is None or bearing is None:
         in_utm = column_of(names, *EASTING) is not None
         raise table.columns_unknown(header, *(EXPECTED_UTM if in_utm else EXPECTED))
     last = max(k for k, name in enumerate(names) if name)
+    tag, tags = _tags(names, rows)
     return _Columns(
         places,
         bearing,
@@ -174,20 +182,39 @@ def _named(table: Table, header: Row) -> _Columns:
         tag,
         width=last + 1,
         noted=last not in (*places.columns, bearing, sigma, tag),
+        tags=tags,
         in_degrees=plain_name(names[bearing]).endswith("_deg"),
     )
 
 
-def _tells_tags(rows: Sequence[Row], column: int) -> bool:
-    """Rather than one tag's, or what was measured each time: of several each is there twice and more in the mean."""
-    return 2 <= len({row.cells[column] for row in rows if column < len(row.cells)}) <= len(rows) / 2
+def _tags(names: tuple[str, ...], rows: Sequence[Row]) -> tuple[int | None, dict[str, str]]:
+    """The first column of those that may name tags which names several, or else any; and the tags by its cells."""
+    some: tuple[int | None, dict[str, str]] = None, {}
+    for name in (*_TAG, *_FREQUENCY):
+        column = column_of(names, name)
+        cells = {row.cells[column] for row in rows if column is not None and column < len(row.cells)} - {""}
+        tags = _frequencies(cells) if name in _FREQUENCY else {cell: cell for cell in cells}
+        if len(set(tags.values())) > 1:
+            return column, tags
+        if tags and some[0] is None and name in _TAG:
+            some = column, tags
+    return some
 
 
-def _refuse_radians(table: Table, column: int, cells: Sequence[float | None]) -> None:
+def _frequencies(cells: Collection[str]) -> dict[str, str]:
+    """Those that are one tag's, measured or written otherwise, by one name."""
+    names: dict[str, str] = {}
+    known = sorted((value, cell) for cell in cells if (value := number_of(cell)) is not None and value > 0.0)
+    for (before, _), (value, cell) in zip([(0.0, ""), *known], known, strict=False):
+        first = value - before > SAME_FREQUENCY * value
+        names[cell] = f"{value:.12g}" if first else next(reversed(names.values()))
+    return names
+
+
+def _refuse_radians(table: Table, column: int, bearings: Sequence[float]) -> None:
     """Raises RecordingError where no bearing is more than a turn's radians: several would all point north."""
-    bearings = [value for value in cells if value is not None and math.isfinite(value)]
     least, most = min(bearings), max(bearings)
-    whole = all(value.is_integer() for value in bearings)
+    whole = all(bearing.is_integer() for bearing in bearings)
     if len(bearings) >= FEWEST_BEARINGS and max(-least, most) <= LARGEST_RAD and not whole:
         raise RecordingError(HeadingsInRadians(str(table.path), column + 1, least, most))
 
@@ -217,7 +244,8 @@ def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float
         if stated is None or not 0.0 < stated <= 180.0:
             return table.cell_unusable(row, columns.sigma, "sigma")
         sigma, given = stated, True
-    tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
+    tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else ""
+    tag = columns.tags.get(tag, tag)
     at_s = None if columns.at is None else row.number(columns.at)
     at_s = at_s if at_s is not None and EARLIEST_S < at_s < LATEST_S else None
     return RecordedBearing(row.line, place, bearing % 360.0, sigma, tag or None, given, at_s)

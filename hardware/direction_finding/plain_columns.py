@@ -71,8 +71,13 @@ def is_plain(table: Table) -> bool:
     )
 
 
+def names_power(cells: tuple[str, ...]) -> bool:
+    """Whether a header does."""
+    return column_of(cells, *POWER, *LINEAR) is not None
+
+
 def _names_both(cells: tuple[str, ...]) -> bool:
-    return column_of(cells, *HEADING, *RADIANS) is not None and column_of(cells, *POWER, *LINEAR) is not None
+    return column_of(cells, *HEADING, *RADIANS) is not None and names_power(cells)
 
 
 def _header(table: Table) -> tuple[Row | None, tuple[Row, ...]]:
@@ -102,7 +107,7 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
         radians=plain_name(names[heading]) in RADIANS,
         unit=_unit(plain_name(names[power])),
         time=time,
-        places=place_columns(names, rows, (heading, power, time, frequency, tag, *turns)),
+        places=place_columns(names, rows),
         frequency=frequency,
         tag=tag,
         turns=tuple(column for column in turns if column is not None),

@@ -28,7 +28,8 @@ _BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
 _WHOLE = re.compile(r"[+-]?\d+")
 _DEGREES = re.compile(r"(?<=[\d.])\s*(?:Â?[°º]|deg|degrees|Grad)$", re.IGNORECASE)
 _DECIBELS = re.compile(r"(?<=[\d.])\s*dB(?:m|W|FS|i|d|[µu]V)?$", re.IGNORECASE)
-_HEMISPHERES = "NSEWnsew "
+_HEMISPHERES = "NSEWOnsewo "
+_BEGINS_AS_NUMBER = re.compile(r"[NSEW]? ?[+\-\u2212]?\.?\d")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _SEPARATOR_TOLD = re.compile(r"\"?sep=.\"?", re.IGNORECASE)
 """First line of what Excel writes; which one it is shows in the others."""
@@ -113,7 +114,7 @@ class Table:
 
 def _is_no_data(row: Row) -> bool:
     """A title may hold a date or a number."""
-    return sum(number_of(cell) is not None for cell in row.cells) < 2
+    return sum(_BEGINS_AS_NUMBER.match(cell) is not None for cell in row.cells) < 2
 
 
 def read_table(path: Path | str) -> Table:
@@ -133,7 +134,7 @@ def read_table(path: Path | str) -> Table:
         try:
             if line.lstrip().startswith(("#", "%")):
                 comments.append(Row(number, cells_of(stripped.lstrip().lstrip("#%"))))
-            elif number == 1 and _SEPARATOR_TOLD.fullmatch(stripped):
+            elif number == 1 and _SEPARATOR_TOLD.fullmatch(line.strip(" ")):
                 continue
             elif line.strip().strip(",;"):
                 rows.append(Row(number, cells_of(stripped)))

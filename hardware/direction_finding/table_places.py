@@ -1,10 +1,10 @@
-"""Places in a table: decimal degrees, whose hemisphere is a sign, a letter beside the number or in the next column; or
-UTM, as biologists' hand-held receivers write it."""
+"""Places in a table: decimal degrees, whose hemisphere is a sign, a letter beside the number or in a column of its own;
+or UTM, as biologists' hand-held receivers write it."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,30 +16,42 @@ from hardware.reasons.table import Quantity
 
 LATITUDE = ("lat", "lat_deg", "latitude", "latitude_deg")
 LONGITUDE = ("lon", "lon_deg", "lng", "long", "longitude", "longitude_deg")
-"""Names of their columns."""
-
 EASTING = ("easting", "easting_m", "utm_easting", "utm_e", "utm_x")
 NORTHING = ("northing", "northing_m", "utm_northing", "utm_n", "utm_y")
 ZONE = ("utm_zone", "utmzone", "zone")
-_ZONE = re.compile(r"(\d{1,2}) ?([C-HJ-NP-X])")
-_EPSG = re.compile(r"(?:EPSG:)?32([67])(\d\d)", re.IGNORECASE)
-_ZONES = 60
-_EASTINGS_M = (100_000.0, 1_000_000.0)
-_MOST_NORTHING_M = 10_000_000.0
-_BAND_S_M = (3.5e6, 4.5e6)
-"""32 to 40 degrees north, rounded outwards."""
+"""Names of their columns."""
 
 _Axis = Literal["latitude", "longitude"]
 
+_OWN = ("dir", "ref", "hem", "hemisphere")
+_LETTERS: dict[_Axis, tuple[str, ...]] = {
+    "latitude": ("ns", "n_s", *(f"{axis}_{own}" for axis in ("lat", "latitude") for own in ("ns", "n_s", *_OWN))),
+    "longitude": ("ew", "e_w", *(f"{axis}_{own}" for axis in ("lon", "longitude") for own in ("ew", "e_w", *_OWN))),
+}
 _SIGNS: dict[_Axis, dict[str, float]] = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
-_UNSURE = "O"
-"""East in German, west in French and Spanish."""
+"""O is none of them: east in German, west in French and Spanish."""
 _MOST_DEG: dict[_Axis, float] = {"latitude": 90.0, "longitude": 180.0}
+_FINE_DEG = re.compile(r"[+-]?\d{1,3}[.,]\d{4,}")
+"""Degrees of places, to ten metres and finer."""
+
+_ZONE = re.compile(r"(?:UTM ?)?0?(\d{1,2})[ -]?([C-HJ-NP-X])((?<=N)ORTH|(?<=S)OUTH)?")
+_EPSG = re.compile(r"(?:EPSG:)?32([67])(\d\d)")
+_ZONES, _ZONE_DEG = 60, 6.0
+_WIDEST_DEG = 7.0
+"""From a zone's middle: Svalbard's reach 6 degrees."""
+_EASTINGS_M = (100_000.0, 1_000_000.0)
+_NORTHINGS_M = {True: (0.0, 9.34e6), False: (1.1e6, 1e7)}
+"""North and south of the equator: to 84 and 80 degrees."""
+_BAND_S_M = (3.5e6, 4.5e6)
+"""32 to 40 degrees north, rounded outwards."""
+_BANDS, _BAND_DEG = "CDEFGHJKLMNPQRSTUVWX", 8.0
+"""From 80 degrees south; the last one ends at 84 north."""
+_BAND_EDGE_DEG = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class PlaceColumns:
-    """Indices from 0. lat_letter, lon_letter: those that hold nothing but hemispheres; None: there is none."""
+    """Indices from 0. lat_letter, lon_letter: those of the hemispheres; None: there is none."""
 
     lat: int
     lon: int
@@ -60,6 +72,26 @@ class PlaceColumns:
         return (self.lon, "longitude") if lon is None else Place(lat, lon)
 
 
+def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | None:
+    """None where they are missing, too many, or of no hemisphere or two."""
+    if column >= len(row.cells):
+        return None
+    signs, cell, told = _SIGNS[axis], row.cells[column].upper(), list[str]()
+    value = number_of(cell)
+    if value is None:
+        told = [end for end in {cell[:1], cell[-1:]} if end in signs]
+        value = number_of(cell.strip("".join(signs)).strip())
+    if letter is not None:
+        word = row.cells[letter].strip("°. ").upper() if letter < len(row.cells) else ""
+        told.append(word[:1] if word.isalpha() else "")
+    if value is None or len(told) > 1 or not signs.keys() >= {*told}:
+        return None
+    if told and value < 0.0 and signs[told[0]] > 0.0:
+        return None
+    signed = signs[told[0]] * abs(value) if told else value
+    return signed if abs(signed) <= _MOST_DEG[axis] else None
+
+
 @dataclass(frozen=True, slots=True)
 class UtmColumns:
     """Indices from 0 of places in the Universal Transverse Mercator grid."""
@@ -78,73 +110,64 @@ class UtmColumns:
         easting, northing = row.number(self.easting), row.number(self.northing)
         if easting is None or not _EASTINGS_M[0] <= easting < _EASTINGS_M[1]:
             return self.easting, "utm"
-        if northing is None or not 0.0 <= northing <= _MOST_NORTHING_M:
+        if northing is None:
             return self.northing, "utm"
         zone = _zone(row.cells[self.zone] if self.zone < len(row.cells) else "", northing)
         if zone is None:
             return self.zone, "utm"
-        number, northern = zone
-        return Place(*map(float, utm.to_latlon(easting, northing, number, northern=northern)))
+        least, most = _NORTHINGS_M[zone.northern]
+        if not least <= northing <= most:
+            return self.northing, "utm"
+        lat, lon = map(float, utm.to_latlon(easting, northing, zone.number, northern=zone.northern))
+        if abs(lon - (_ZONE_DEG * zone.number - 183.0)) > _WIDEST_DEG:
+            return self.easting, "utm"
+        return Place(lat, lon) if _fits(zone.band, lat) else (self.zone, "utm")
 
 
-def _zone(cell: str, northing_m: float) -> tuple[int, bool] | None:
-    """(number, whether it is north of the equator) of "22N", the band "22U" or EPSG:32622; None where it does not tell,
-    as "17S" between 32 and 40 degrees, which is either the band there or the hemisphere."""
-    found = _EPSG.fullmatch(cell)
-    if found is not None:
-        number, northern = int(found[2]), found[1] == "6"
+@dataclass(frozen=True, slots=True)
+class _Zone:
+    """band: the letter of eight degrees of latitude; empty: only the hemisphere is told."""
+
+    number: int
+    northern: bool
+    band: str = ""
+
+
+def _zone(cell: str, northing_m: float) -> _Zone | None:
+    """Of "22N", the band "22U", "22 North" or EPSG:32622; None where it does not tell, as "17S" between 32 and 40
+    degrees, which is either the band there or the hemisphere."""
+    told = cell.strip().upper()
+    by_code, found = _EPSG.fullmatch(told), _ZONE.fullmatch(told)
+    if by_code is not None:
+        zone = _Zone(int(by_code[2]), by_code[1] == "6")
+    elif found is None or (found[2] == "S" and not found[3] and _BAND_S_M[0] <= northing_m <= _BAND_S_M[1]):
+        return None
     else:
-        found = _ZONE.fullmatch(cell.upper())
-        if found is None or (found[2] == "S" and _BAND_S_M[0] <= northing_m <= _BAND_S_M[1]):
-            return None
-        number, northern = int(found[1]), found[2] >= "N" and found[2] != "S"
-    return (number, northern) if 1 <= number <= _ZONES else None
+        letter = found[2]
+        zone = _Zone(int(found[1]), letter >= "N" and letter != "S", "" if letter in "NS" else letter)
+    return zone if 1 <= zone.number <= _ZONES else None
+
+
+def _fits(band: str, lat: float) -> bool:
+    if not band:
+        return True
+    south = _BAND_DEG * _BANDS.index(band) - 80.0
+    north = 84.0 if band == _BANDS[-1] else south + _BAND_DEG
+    return south - _BAND_EDGE_DEG <= lat <= north + _BAND_EDGE_DEG
 
 
 Places = PlaceColumns | UtmColumns
 
 
-def place_columns(names: tuple[str, ...], rows: Sequence[Row], others: Collection[int | None]) -> Places | None:
-    """By a header's names; None: it names none. others: columns that hold something else."""
+def place_columns(names: tuple[str, ...], rows: Sequence[Row]) -> Places | None:
+    """By a header's names; None: it names none, or metres without a zone."""
     easting, northing, zone = (column_of(names, *some) for some in (EASTING, NORTHING, ZONE))
     lat, lon = column_of(names, *LATITUDE), column_of(names, *LONGITUDE)
     if lat is not None and lon is not None:
-        return degree_columns(rows, lat, lon, others)
+        return PlaceColumns(lat, lon, column_of(names, *_LETTERS["latitude"]), column_of(names, *_LETTERS["longitude"]))
     if easting is None or northing is None:
         return None
     if zone is not None:
         return UtmColumns(easting, northing, zone)
-    in_degrees = all(abs(row.number(easting) or 0.0) <= _MOST_DEG["longitude"] for row in rows)
-    return degree_columns(rows, northing, easting, others) if in_degrees else None
-
-
-def degree_columns(rows: Sequence[Row], lat: int, lon: int, others: Collection[int | None] = ()) -> PlaceColumns:
-    """With the columns of letters beside them."""
-    taken = {lat, lon, *others}
-    beside = _letters(rows, lat + 1, "latitude", taken), _letters(rows, lon + 1, "longitude", taken)
-    return PlaceColumns(lat, lon, *beside)
-
-
-def _letters(rows: Sequence[Row], column: int, axis: _Axis, taken: Collection[int | None]) -> int | None:
-    """The column, if each of its cells that is not empty is one letter of a hemisphere."""
-    if column in taken:
-        return None
-    cells = {row.cells[column].upper() for row in rows if column < len(row.cells)} - {""}
-    return column if cells and cells <= {*_SIGNS[axis], _UNSURE} else None
-
-
-def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | None:
-    """None where they are missing, too many, or of no hemisphere or two."""
-    if column >= len(row.cells):
-        return None
-    signs, cell, told = _SIGNS[axis], row.cells[column].upper(), list[str]()
-    value = number_of(cell)
-    if value is None:
-        told = [end for end in {cell[:1], cell[-1:]} if end in signs]
-        value = number_of(cell.strip("".join(signs)).strip())
-    if letter is not None:
-        told.append(row.cells[letter].upper() if letter < len(row.cells) else "")
-    if value is None or len(told) > 1 or (told and (value < 0.0 or told[0] not in signs)):
-        return None
-    signed = signs[told[0]] * value if told else value
-    return signed if abs(signed) <= _MOST_DEG[axis] else None
+    cells = {row.cells[k] for row in rows for k in (easting, northing) if row.number(k) is not None}
+    return PlaceColumns(northing, easting) if cells and all(map(_FINE_DEG.fullmatch, cells)) else None

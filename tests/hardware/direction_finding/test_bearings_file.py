@@ -7,7 +7,13 @@ from pathlib import Path
 import pytest
 from refusals import refusing
 
-from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearings, bearings_in
+from hardware.direction_finding.bearings_file import (
+    DEFAULT_SIGMA_DEG,
+    EXPECTED,
+    RecordedBearings,
+    bearings_in,
+    holds_bearings,
+)
 from hardware.direction_finding.table_file import RecordingError, read_table
 from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnusable, HeadingsInRadians, Quantity, TooManyCells
 
@@ -155,10 +161,42 @@ def test_biologists_files_in_utm_hold_the_bearings_of_each_frequency(tmp_path: P
         read_bearings(without)
 
 
-@pytest.mark.parametrize("frequencies", [("148.5201", "148.5203", "148.5201"), ("148.52", "148.52", "148.52")])
-def test_a_frequency_that_is_measured_or_the_only_one_names_no_tag(
-    tmp_path: Path, frequencies: tuple[str, ...]
+@pytest.mark.parametrize(
+    ("header", "cells", "tags"),
+    [
+        ("frequency_mhz", ("148.5201", "148.5203", "148.5201"), (None,) * 3),
+        ("frequency", ("148.52", "148.52", "148.52"), (None,) * 3),
+        ("Freq (MHz)", ("150.12", "150.120", "150.34"), ("150.12", "150.12", "150.34")),
+        ("frequency_hz", ("150120000", "150121000", "151900000"), ("150120000", "150120000", "151900000")),
+        ("collar,animal", ("VHF,fox", "VHF,hare", "VHF,fox"), ("fox", "hare", "fox")),
+        ("tag,frequency", (",150.12", ",150.34", ",150.12"), ("150.12", "150.34", "150.12")),
+        ("collar", ("VHF", "VHF", "VHF"), ("VHF",) * 3),
+        ("tag,collar", ("7,a", "7,b", "7,a"), ("a", "b", "a")),
+    ],
+)
+def test_tags_are_named_by_the_column_that_tells_several(
+    tmp_path: Path, header: str, cells: tuple[str, ...], tags: tuple[str | None, ...]
 ) -> None:
-    rows = "\n".join(f"50.{k},7.2,{k}0,{frequency}" for k, frequency in enumerate(frequencies, start=1))
-    recorded = read_bearings(written(tmp_path, f"lat,lon,bearing_deg,frequency_mhz\n{rows}"))
-    assert {one.tag for one in recorded.bearings} == {None}
+    rows = "\n".join(f"50.{k},7.2,{k}0,{cell}" for k, cell in enumerate(cells, start=1))
+    recorded = read_bearings(written(tmp_path, f"lat,lon,bearing_deg,{header}\n{rows}"))
+    assert tuple(one.tag for one in recorded.bearings) == tags
+
+
+def test_rows_above_a_header_are_no_titles_that_are_lost(tmp_path: Path) -> None:
+    path = written(tmp_path, "50.0N,7.0E,32.7\n50.0N,7.01E,327.3\nlat,lon,bearing\n50.01,7.0,147.3\n")
+    with refusing(ColumnsUnknown(str(path), 1, 3, EXPECTED), RecordingError):
+        read_bearings(path)
+
+
+def test_radians_are_told_by_the_rows_that_are_used(tmp_path: Path) -> None:
+    rows = "50.1,7.2,0.57\n50.2,7.3,5.71\n50.3,7.2,2.57\n,,359\n"
+    with pytest.raises(RecordingError, match="radians"):
+        read_bearings(written(tmp_path, f"lat,lon,bearing\n{rows}"))
+
+
+def test_a_named_table_of_ten_columns_holds_bearings(tmp_path: Path) -> None:
+    header = "date,time,obs,st,easting,northing,zone,azimuth,frequency,notes"
+    row = "2017-07-13,16:40,MR,1,279215,5359442,22N,342,149.142,weak"
+    assert holds_bearings(read_table(written(tmp_path, f"{header}\n{row}\n")))
+    sweep = written(tmp_path, f"{header.replace('notes', 'level')}\n{row.replace('weak', '-60')}\n")
+    assert not holds_bearings(read_table(sweep))
