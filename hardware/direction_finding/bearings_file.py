@@ -1,13 +1,14 @@
-"""Bearings as files: UAV-RT bearing files (10 columns, no header), plain CSV (lat, lon, bearing_deg[, sigma_deg])."""
+"""Bearings as files: UAV-RT bearing files (10 columns, no header), plain CSV (lat, lon or UTM, bearing_deg[,
+sigma_deg])."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from hardware.direction_finding.plain_columns import names_power
 from hardware.direction_finding.plain_units import LARGEST_RAD
-from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, number_of, plain_name
+from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, plain_name
 from hardware.direction_finding.table_places import (
     EASTING,
     LATITUDE,
@@ -17,6 +18,7 @@ from hardware.direction_finding.table_places import (
     Places,
     place_columns,
 )
+from hardware.direction_finding.table_tags import tags_in
 from hardware.direction_finding.uavrt import is_uavrt
 from hardware.readings import Place
 from hardware.reasons.table import (
@@ -41,10 +43,6 @@ EXPECTED_UTM = ("easting", "northing", "utm_zone", "bearing_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
 POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")
 """A table that names one of these holds headings with what was heard there."""
-_TAG = ("tag", "tag_id", "tagid", "transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
-_FREQUENCY = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
-SAME_FREQUENCY = 2e-5
-"""Of a frequency: a tag's own drifts by so much (3 kHz of 150 MHz); others are 5 kHz away and more."""
 _SIGMA = ("sigma_deg", "sigma", "std_deg")
 
 
@@ -174,7 +172,7 @@ def _named(table: Table, header: Row) -> _Columns:
         in_utm = column_of(names, *EASTING) is not None
         raise table.columns_unknown(header, *(EXPECTED_UTM if in_utm else EXPECTED))
     last = max(k for k, name in enumerate(names) if name)
-    tag, tags = _tags(names, rows)
+    tag, tags = tags_in(names, rows)
     return _Columns(
         places,
         bearing,
@@ -185,30 +183,6 @@ def _named(table: Table, header: Row) -> _Columns:
         tags=tags,
         in_degrees=plain_name(names[bearing]).endswith("_deg"),
     )
-
-
-def _tags(names: tuple[str, ...], rows: Sequence[Row]) -> tuple[int | None, dict[str, str]]:
-    """The first column of those that may name tags which names several, or else any; and the tags by its cells."""
-    some: tuple[int | None, dict[str, str]] = None, {}
-    for name in (*_TAG, *_FREQUENCY):
-        column = column_of(names, name)
-        cells = {row.cells[column] for row in rows if column is not None and column < len(row.cells)} - {""}
-        tags = _frequencies(cells) if name in _FREQUENCY else {cell: cell for cell in cells}
-        if len(set(tags.values())) > 1:
-            return column, tags
-        if tags and some[0] is None and name in _TAG:
-            some = column, tags
-    return some
-
-
-def _frequencies(cells: Collection[str]) -> dict[str, str]:
-    """Those that are one tag's, measured or written otherwise, by one name."""
-    names: dict[str, str] = {}
-    known = sorted((value, cell) for cell in cells if (value := number_of(cell)) is not None and value > 0.0)
-    for (before, _), (value, cell) in zip([(0.0, ""), *known], known, strict=False):
-        first = value - before > SAME_FREQUENCY * value
-        names[cell] = f"{value:.12g}" if first else next(reversed(names.values()))
-    return names
 
 
 def _refuse_radians(table: Table, column: int, bearings: Sequence[float]) -> None:

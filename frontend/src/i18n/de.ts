@@ -357,7 +357,7 @@ export const de: Record<MessageKey, string> = {
   "ways.upload": "Datei wählen …",
   "recording.title": "Aufnahme einlesen",
   "recording.explain":
-    "Drehungen: UAV-RT-Datei, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei; ohne Kurs darin auch eine CSV mit Zeit und Kurs).\nPeilungen: Peildatei von UAV-RT oder uns, CSV mit lat, lon und bearing_deg, oder CSV eines KrakenSDR.",
+    "Drehungen: UAV-RT-Datei, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei; ohne Kurs darin auch eine CSV mit Zeit und Kurs).\nPeilungen: Peildatei von UAV-RT oder uns, CSV mit lat, lon (oder easting, northing, utm_zone) und bearing_deg, oder CSV eines KrakenSDR.",
   "recording.files": "Dateien",
   "recording.antenna": "Antennendiagramm, wenn eine andere Antenne empfing",
   "recording.place": "Wo, wenn nicht in der Datei",

@@ -114,7 +114,7 @@ export const pagesEn = {
   "ways.upload": "Choose a file …",
   "recording.title": "Import a recording",
   "recording.explain":
-    "Sweeps: UAV-RT rotation file, CSV of heading_deg and power_db, or SigMF (meta and data together; if it holds no headings, add a CSV of time and heading).\nBearings: UAV-RT's or our own bearing file, CSV of lat, lon and bearing_deg, or a KrakenSDR's CSV.",
+    "Sweeps: UAV-RT rotation file, CSV of heading_deg and power_db, or SigMF (meta and data together; if it holds no headings, add a CSV of time and heading).\nBearings: UAV-RT's or our own bearing file, CSV of lat, lon (or easting, northing, utm_zone) and bearing_deg, or a KrakenSDR's CSV.",
   "recording.files": "Files",
   "recording.antenna": "Antenna pattern, if another antenna heard it",
   "recording.place": "Where, if not in the file",
