@@ -24,6 +24,8 @@ from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
+_MINUTES_COMMA = re.compile(r"\d{1,3}[°º: ] ?(?:\d{1,2}['′: ] ?)?\d{1,2},\d+['′″\"]{0,2}")
+"""The same in minutes or seconds of a place."""
 _BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
 _WHOLE = re.compile(r"[+-]?\d+")
 _DEGREES = re.compile(r"(?<=[\d.])\s*(?:Â?[°º]|deg|degrees|Grad)$", re.IGNORECASE)
@@ -220,7 +222,8 @@ def cells_of(line: str) -> tuple[str, ...]:
 
 def _is_decimal(cell: str) -> bool:
     """Whether it has a decimal comma."""
-    return _DECIMAL_COMMA.fullmatch(_bare(cell, _DEGREES, _DECIBELS)) is not None
+    plain = _bare(cell, _DEGREES, _DECIBELS)
+    return (_DECIMAL_COMMA.fullmatch(plain) or _MINUTES_COMMA.fullmatch(cell)) is not None
 
 
 def _is_note(cell: str) -> bool:

@@ -1,5 +1,5 @@
-"""Places in a table: decimal degrees, whose hemisphere is a sign, a letter beside the number or in a column of its own;
-or UTM, as biologists' hand-held receivers write it."""
+"""Places in a table: degrees, decimal or with minutes, whose hemisphere is a sign, a letter beside the number or in a
+column of its own; or UTM, as biologists' hand-held receivers write it."""
 
 from __future__ import annotations
 
@@ -33,6 +33,10 @@ _SIGNS: dict[_Axis, dict[str, float]] = {"latitude": {"N": 1.0, "S": -1.0}, "lon
 _MOST_DEG: dict[_Axis, float] = {"latitude": 90.0, "longitude": 180.0}
 _FINE_DEG = re.compile(r"[+-]?\d{1,3}[.,]\d{4,}")
 """Degrees of places, to ten metres and finer."""
+
+_PART = r"(\d{1,2}(?:[.,]\d{1,9})?)"
+_SEXAGESIMAL = re.compile(rf"(\d{{1,3}})[°º: ] ?{_PART}['′’: ]?(?: ?{_PART}(?:\"|″|”|'')?)?")
+"""Of no sign: which parts it would hold for is written in more than one way."""
 
 _ZONE = re.compile(r"(?:UTM ?)?0?(\d{1,2})[ -]?([C-HJ-NP-X])((?<=N)ORTH|(?<=S)OUTH)?")
 _EPSG = re.compile(r"(?:EPSG:)?32([67])(\d\d)")
@@ -80,7 +84,9 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
     value = number_of(cell)
     if value is None:
         told = [end for end in {cell[:1], cell[-1:]} if end in signs]
-        value = number_of(cell.strip("".join(signs)).strip())
+        bare = cell.strip("".join(signs)).strip()
+        value = number_of(bare)
+        value = _sexagesimal(bare) if value is None else value
     if letter is not None:
         word = row.cells[letter].strip("°. ").upper() if letter < len(row.cells) else ""
         told.append(word[:1] if word.isalpha() else "")
@@ -90,6 +96,17 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
         return None
     signed = signs[told[0]] * abs(value) if told else value
     return signed if abs(signed) <= _MOST_DEG[axis] else None
+
+
+def _sexagesimal(cell: str) -> float | None:
+    """Degrees of 50°06'30.5", 50 06.508 or 50:06:30.5; None for anything else."""
+    found = _SEXAGESIMAL.fullmatch(cell)
+    if found is None:
+        return None
+    minutes, seconds = (float((part or "0").replace(",", ".")) for part in found.group(2, 3))
+    if minutes >= 60.0 or seconds >= 60.0 or (found[3] is not None and not minutes.is_integer()):
+        return None
+    return float(found[1]) + minutes / 60.0 + seconds / 3600.0
 
 
 @dataclass(frozen=True, slots=True)

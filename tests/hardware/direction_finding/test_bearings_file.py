@@ -51,6 +51,7 @@ def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
         "50,1\t7,2\t10,0\t3\n50.2\t7.3\t20\n",
         "bearing,lat,lon,sigma,note\n10,50.1,7.2,3,hill;1,5\n20,50.2,7.3,,a;b\n",
         "sep=;\nlat;lon;bearing;sigma\n50,1 N;7,2 E;10;3\n50,2 N;7,3 E;20;\n",
+        "lat;lon;bearing;sigma\n50°06,000 N;E 7 12,000';10;3\n50°12'0,0\"N;7,3;20;\n",
         "lat,N/S,lon,E/W,bearing_deg,sigma\n50.1,N,7.2,E,10,3\n50.2,N,7.3,E,20,\n",
         "Beacon on the ridge\nTaken, on foot, 2026\n\nlat,lon,bearing,sigma\n50.1,7.2,10,3\n50.2,7.3,20,\n",
         "% lat, lon, bearing_deg, sigma_deg\n50.1,7.2,10,3\n50.2,7.3,20\n",

@@ -36,6 +36,31 @@ def test_the_hemisphere_is_read_beside_the_number_and_not_in_notes(line: str, pl
         assert place_in(line, header) == place
 
 
+@pytest.mark.parametrize(
+    ("cell", "lat"),
+    [
+        ("50°30'00\"N", 50.5),
+        ("50° 30' 36\" S", -50.51),
+        ("N50 30.6", 50.51),
+        ("50 30.6", 50.51),
+        ("50:30:36", 50.51),
+        ("50°30′36″", 50.51),
+        ("S 50°30.6'", -50.51),
+        ("50 30 36.0N", 50.51),
+        ("50°60'N", None),
+        ("50°30'61\"N", None),
+        ("50°30.5'36\"N", None),
+        ("-50°30'", None),
+        ("50°30'30'30", None),
+        ("90°30'N", None),
+        ("50 / 30", None),
+    ],
+)
+def test_minutes_and_seconds_are_read(cell: str, lat: float | None) -> None:
+    expected = (0, "latitude") if lat is None else Place(pytest.approx(lat, abs=1e-9), 7.25)
+    assert place_in(f"{cell},7.25") == expected
+
+
 @pytest.mark.parametrize("header", ["lat,N/S,lon,E/W", "lat,lat dir,lon,lon dir", "latitude,ns,long,longitude_ref"])
 @pytest.mark.parametrize(
     ("line", "place"),
