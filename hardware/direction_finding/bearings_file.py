@@ -158,7 +158,7 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
     if len(first.cells) == 10:
         return _Columns(PlaceColumns(4, 5), bearing=2, sigma=None, tag=0, at=9, in_degrees=True), table.rows
     if len(first.cells) in (3, 4):
-        if first.number(0) is None or _unlike_sigmas(table) or _counts_rows(table):
+        if first.number(0) is None or first.number(1) is None or _unlike_sigmas(table) or _counts_rows(table):
             raise table.columns_unknown(first, *EXPECTED)
         return _Columns(PlaceColumns(0, 1), bearing=2, sigma=3, tag=None), table.rows
     raise table.columns_unknown(first, *EXPECTED)
@@ -172,7 +172,7 @@ def _named(table: Table, header: Row) -> _Columns:
         in_utm = column_of(names, *EASTING) is not None
         raise table.columns_unknown(header, *(EXPECTED_UTM if in_utm else EXPECTED))
     last = max(k for k, name in enumerate(names) if name)
-    tag, tags = tags_in(names, rows)
+    tag, tags = tags_in(names, [row for row in rows if row.number(bearing) is not None])
     return _Columns(
         places,
         bearing,

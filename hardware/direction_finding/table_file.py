@@ -24,7 +24,7 @@ from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
-_MINUTES_COMMA = re.compile(r"\d{1,3}[°º: ] ?(?:\d{1,2}['′: ] ?)?\d{1,2},\d+['′″\"]{0,2}")
+_MINUTES_COMMA = re.compile(r"\d{1,3}[°º: ] ?(?:\d{1,2}['′’: ] ?)?\d{1,2},\d+['′’″”\"]{0,2}")
 """The same in minutes or seconds of a place."""
 _BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
 _WHOLE = re.compile(r"[+-]?\d+")

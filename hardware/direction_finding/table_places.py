@@ -29,18 +29,24 @@ _LETTERS: dict[_Axis, tuple[str, ...]] = {
     "longitude": ("ew", "e_w", *(f"{axis}_{own}" for axis in ("lon", "longitude") for own in ("ew", "e_w", *_OWN))),
 }
 _SIGNS: dict[_Axis, dict[str, float]] = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
-"""O is none of them: east in German, west in French and Spanish."""
+_WORDS = {"NORTH": "N", "NORD": "N", "SOUTH": "S", "SÜD": "S", "SUD": "S", "EAST": "E", "EST": "E", "WEST": "W"}
+_UNSURE = {"O", "OST", "OUEST", "OESTE"}
+"""O is east in German, west in French and Spanish."""
+_PARTS = tuple(f"{axis}_{part}" for axis in ("lat", "lon") for part in ("min", "minutes", "sec", "seconds"))
+"""Names of columns that hold a part of a place: it is read from one cell alone."""
 _MOST_DEG: dict[_Axis, float] = {"latitude": 90.0, "longitude": 180.0}
 _FINE_DEG = re.compile(r"[+-]?\d{1,3}[.,]\d{4,}")
 """Degrees of places, to ten metres and finer."""
 
-_PART = r"(\d{1,2}(?:[.,]\d{1,9})?)"
-_SEXAGESIMAL = re.compile(rf"(\d{{1,3}})[°º: ] ?{_PART}['′’: ]?(?: ?{_PART}(?:\"|″|”|'')?)?")
+_MINUTES = re.compile(r"(\d{1,3})[°º: ] ?(\d{1,2}(?:[.,]\d{1,9})?)['′’]?")
+_SECONDS = re.compile(r"(\d{1,3})[°º: ] ?(\d{1,2})['′’: ] ?(\d{1,2}(?:[.,]\d{1,9})?)(?:\"|″|”|'')?")
 """Of no sign: which parts it would hold for is written in more than one way."""
 
 _ZONE = re.compile(r"(?:UTM ?)?0?(\d{1,2})[ -]?([C-HJ-NP-X])((?<=N)ORTH|(?<=S)OUTH)?")
 _EPSG = re.compile(r"(?:EPSG:)?32([67])(\d\d)")
 _ZONES, _ZONE_DEG = 60, 6.0
+MOST_ZONES = 2
+"""Of one file: more are no zones of UTM, but parts of a study's area."""
 _WIDEST_DEG = 7.0
 """From a zone's middle: Svalbard's reach 6 degrees."""
 _EASTINGS_M = (100_000.0, 1_000_000.0)
@@ -80,16 +86,15 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
     """None where they are missing, too many, or of no hemisphere or two."""
     if column >= len(row.cells):
         return None
-    signs, cell, told = _SIGNS[axis], row.cells[column].upper(), list[str]()
+    signs, cell, told = _SIGNS[axis], row.cells[column], list[str]()
     value = number_of(cell)
     if value is None:
-        told = [end for end in {cell[:1], cell[-1:]} if end in signs]
-        bare = cell.strip("".join(signs)).strip()
-        value = number_of(bare)
-        value = _sexagesimal(bare) if value is None else value
+        told = [end for end in {cell[:1].upper(), cell[-1:].upper()} if end in signs]
+        value = number_of(cell.strip("NSEWnsew").strip()) if told else None
+        # a small letter behind seconds is their unit
+        value = _sexagesimal(cell.strip("NSEW").strip()) if value is None else value
     if letter is not None:
-        word = row.cells[letter].strip("°. ").upper() if letter < len(row.cells) else ""
-        told.append(word[:1] if word.isalpha() else "")
+        told.append(_hemisphere(row, letter))
     if value is None or len(told) > 1 or not signs.keys() >= {*told}:
         return None
     if told and value < 0.0 and signs[told[0]] > 0.0:
@@ -98,15 +103,26 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
     return signed if abs(signed) <= _MOST_DEG[axis] else None
 
 
+def _hemisphere(row: Row, column: int) -> str:
+    """N, S, E, W, what is unsure, or empty."""
+    word = row.cells[column].strip("°. ").upper() if column < len(row.cells) else ""
+    known = _WORDS.get(word, word)
+    return known if known in {"N", "S", "E", "W", *_UNSURE} else ""
+
+
+def _letters(names: tuple[str, ...], rows: Sequence[Row], axis: _Axis) -> int | None:
+    """The column that is named for them, unless it holds something else, as a number of satellites."""
+    column = column_of(names, *_LETTERS[axis])
+    return column if column is not None and any(_hemisphere(row, column) for row in rows) else None
+
+
 def _sexagesimal(cell: str) -> float | None:
     """Degrees of 50°06'30.5", 50 06.508 or 50:06:30.5; None for anything else."""
-    found = _SEXAGESIMAL.fullmatch(cell)
+    found = _MINUTES.fullmatch(cell) or _SECONDS.fullmatch(cell)
     if found is None:
         return None
-    minutes, seconds = (float((part or "0").replace(",", ".")) for part in found.group(2, 3))
-    if minutes >= 60.0 or seconds >= 60.0 or (found[3] is not None and not minutes.is_integer()):
-        return None
-    return float(found[1]) + minutes / 60.0 + seconds / 3600.0
+    degrees, minutes, seconds = (float(part.replace(",", ".")) for part in (*found.groups(), "0")[:3])
+    return degrees + minutes / 60.0 + seconds / 3600.0 if max(minutes, seconds) < 60.0 else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,14 +193,16 @@ Places = PlaceColumns | UtmColumns
 
 
 def place_columns(names: tuple[str, ...], rows: Sequence[Row]) -> Places | None:
-    """By a header's names; None: it names none, or metres without a zone."""
+    """By a header's names; None: it names none, parts of them, metres without a zone, or zones far apart."""
     easting, northing, zone = (column_of(names, *some) for some in (EASTING, NORTHING, ZONE))
     lat, lon = column_of(names, *LATITUDE), column_of(names, *LONGITUDE)
     if lat is not None and lon is not None:
-        return PlaceColumns(lat, lon, column_of(names, *_LETTERS["latitude"]), column_of(names, *_LETTERS["longitude"]))
+        letters = _letters(names, rows, "latitude"), _letters(names, rows, "longitude")
+        return PlaceColumns(lat, lon, *letters) if column_of(names, *_PARTS) is None else None
     if easting is None or northing is None:
         return None
     if zone is not None:
-        return UtmColumns(easting, northing, zone)
+        zones = {found.number for row in rows if zone < len(row.cells) and (found := _zone(row.cells[zone], 0.0))}
+        return UtmColumns(easting, northing, zone) if len(zones) <= MOST_ZONES else None
     cells = {row.cells[k] for row in rows for k in (easting, northing) if row.number(k) is not None}
     return PlaceColumns(northing, easting) if cells and all(map(_FINE_DEG.fullmatch, cells)) else None

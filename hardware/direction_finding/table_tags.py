@@ -2,37 +2,46 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 
 from hardware.direction_finding.table_file import Row, column_of, number_of
 
-_TAGS = ("tag", "tag_id", "tagid", "transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
+_TAGS = ("tag", "tag_id", "tagid")
+_OTHERS = ("transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
 _FREQUENCIES = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
-SAME_FREQUENCY = 2e-5
-"""Of a frequency: a tag's own drifts by so much (3 kHz of 150 MHz); others are 5 kHz away and more."""
+_UNIT = re.compile(r" ?[kMG]?Hz$", re.IGNORECASE)
+SAME_FREQUENCY = 1e-5
+"""Of a frequency: a tag's own drifts by so much (1.5 kHz of 150 MHz); others are 5 kHz away and more."""
 
 
 def tags_in(names: tuple[str, ...], rows: Sequence[Row]) -> tuple[int | None, dict[str, str]]:
-    """The first column of those that may name tags which names several, else the first that names any, and the tags by
-    its cells. A single frequency names none."""
-    one: tuple[int | None, dict[str, str]] = None, {}
-    for name in (*_TAGS, *_FREQUENCIES):
+    """The column of tags if it names one in each row, else the one that names most, and the tags by its cells. A single
+    frequency names none."""
+    best: tuple[int | None, dict[str, str]] = None, {}
+    for name in (*_TAGS, *_OTHERS, *_FREQUENCIES):
         column = column_of(names, name)
-        cells = {row.cells[column] for row in rows if column is not None and column < len(row.cells)} - {""}
-        tags = _frequencies(cells) if name in _FREQUENCIES else {cell: cell for cell in cells}
-        if len(set(tags.values())) > 1:
+        if column is None:
+            continue
+        cells = {row.cells[column] if column < len(row.cells) else "" for row in rows}
+        told = cells - {""}
+        tags = _frequencies(told) if name in _FREQUENCIES else {cell: cell for cell in told}
+        if name in _TAGS and told == cells:
             return column, tags
-        if tags and one[0] is None and name in _TAGS:
-            one = column, tags
-    return one
+        several = len(set(tags.values()))
+        if several > max(len(set(best[1].values())), name in _FREQUENCIES):
+            best = column, tags
+    return best
 
 
 def _frequencies(cells: Collection[str]) -> dict[str, str]:
     """Those that are one tag's, measured or written otherwise, by one name."""
     names: dict[str, str] = {}
-    name, before = "", 0.0
-    for value, cell in sorted((value, cell) for cell in cells if (value := number_of(cell) or 0.0) > 0.0):
-        if value - before > SAME_FREQUENCY * value:
-            name = f"{value:.12g}"
-        names[cell], before = name, value
+    name, first = "", 0.0
+    for value, cell in sorted(
+        (value, cell) for cell in cells if (value := number_of(_UNIT.sub("", cell)) or 0.0) > 0.0
+    ):
+        if value - first > SAME_FREQUENCY * value:
+            name, first = f"{value:.12g}", value
+        names[cell] = name
     return names

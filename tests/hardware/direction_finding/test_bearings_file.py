@@ -95,6 +95,8 @@ def test_bad_rows_are_named_and_left_out(tmp_path: Path, row: str, column: int, 
         "lat,lon,bearing\n",
         "lat,lon,angle\n1,2,3\n",
         "x,y,z,w,v\n",
+        "12,10:30:36,45\n12,10:33:10,95\n",
+        "lat_deg,lat_min,lon_deg,lon_min,bearing_deg\n50,30.5,7,15.2,45\n",
         "50.1,7.2,north\n",
     ],
 )
@@ -165,14 +167,18 @@ def test_biologists_files_in_utm_hold_the_bearings_of_each_frequency(tmp_path: P
 @pytest.mark.parametrize(
     ("header", "cells", "tags"),
     [
-        ("frequency_mhz", ("148.5201", "148.5203", "148.5201"), (None,) * 3),
+        ("frequency_mhz", ("148.5201", "148.5203", "148.5207"), (None,) * 3),
         ("frequency", ("148.52", "148.52", "148.52"), (None,) * 3),
         ("Freq (MHz)", ("150.12", "150.120", "150.34"), ("150.12", "150.12", "150.34")),
         ("frequency_hz", ("150120000", "150121000", "151900000"), ("150120000", "150120000", "151900000")),
         ("collar,animal", ("VHF,fox", "VHF,hare", "VHF,fox"), ("fox", "hare", "fox")),
         ("tag,frequency", (",150.12", ",150.34", ",150.12"), ("150.12", "150.34", "150.12")),
         ("collar", ("VHF", "VHF", "VHF"), ("VHF",) * 3),
-        ("tag,collar", ("7,a", "7,b", "7,a"), ("a", "b", "a")),
+        ("tag,collar", ("7,old", "7,new", "7,old"), ("7", "7", "7")),
+        ("tag,frequency_hz", ("7,150100000", "7,150104000", "7,150108000"), ("7", "7", "7")),
+        ("animal,frequency", ("fox,150.1", "fox,150.2", "badger,150.3"), ("150.1", "150.2", "150.3")),
+        ("frequency", ("150.123 MHz", "150.223MHz", "150.123"), ("150.123", "150.223", "150.123")),
+        ("frequency_mhz", ("433.100", "433.105", "433.110"), ("433.1", "433.105", "433.11")),
     ],
 )
 def test_tags_are_named_by_the_column_that_tells_several(

@@ -54,11 +54,20 @@ def test_the_hemisphere_is_read_beside_the_number_and_not_in_notes(line: str, pl
         ("50°30'30'30", None),
         ("90°30'N", None),
         ("50 / 30", None),
+        ("50 123", None),
+        ("12 345", None),
+        ("50 3045", None),
+        ("50 30.05.5", None),
+        ("50:30:36s", None),
     ],
 )
 def test_minutes_and_seconds_are_read(cell: str, lat: float | None) -> None:
-    expected = (0, "latitude") if lat is None else Place(pytest.approx(lat, abs=1e-9), 7.25)
-    assert place_in(f"{cell},7.25") == expected
+    place = place_in(f"{cell},7.25")
+    if lat is None:
+        assert place == (0, "latitude")
+    else:
+        assert isinstance(place, Place)
+        assert (place.lat, place.lon) == (pytest.approx(lat, abs=1e-9), 7.25)
 
 
 @pytest.mark.parametrize("header", ["lat,N/S,lon,E/W", "lat,lat dir,lon,lon dir", "latitude,ns,long,longitude_ref"])
@@ -70,8 +79,8 @@ def test_minutes_and_seconds_are_read(cell: str, lat: float | None) -> None:
         ("33.9,N,118.4,w", Place(33.9, -118.4)),
         ("33.9,South,118.4,°W", Place(-33.9, -118.4)),
         ("0,N,7.25,E", Place(0.0, 7.25)),
-        ("33.9,,18.4,E", (0, "latitude")),
-        ("33.9", (0, "latitude")),
+        ("33.9,O,18.4,E", (0, "latitude")),
+        ("33.9", (2, "longitude")),
         ("33.9,S,18.4,O", (2, "longitude")),
         ("33.9,S,18.4,Ouest", (2, "longitude")),
         ("33.9,S,-18.4,E", (2, "longitude")),
@@ -161,3 +170,26 @@ def test_degrees_in_columns_of_a_grid_are_degrees_and_metres_without_a_zone_are_
     assert columns.place(degrees) == Place(48.34954, -53.98013)
     for metres in ("279215,5359442", "10,20", "10.25,20.75"):
         assert place_columns(("Easting", "Northing"), [degrees, Row(2, cells_of(metres))]) is None
+
+
+@pytest.mark.parametrize("cells", ["50.5,WGS,7.25,WGS", "50.5,9,7.25,12", "50.5,,7.25,", "50.5,station,7.25,Wald"])
+def test_a_column_of_references_or_satellites_turns_no_place(cells: str) -> None:
+    row = Row(1, cells_of(cells))
+    columns = place_columns(("lat", "lat_ref", "lon", "lon_ref"), [row])
+    assert columns is not None
+    assert columns.place(row) == Place(50.5, 7.25)
+
+
+def test_a_row_without_the_letter_that_others_have_is_left_out() -> None:
+    rows = [Row(k, cells_of(line)) for k, line in enumerate(("33.9,S,18.4,E", "33.9,,18.4,E", "33.9,S,18.4,Wald"))]
+    columns = place_columns(("lat", "ns", "lon", "ew"), rows)
+    assert columns is not None
+    assert [columns.place(row) for row in rows] == [Place(-33.9, 18.4), (0, "latitude"), (2, "longitude")]
+
+
+def test_minutes_in_columns_of_their_own_and_zones_of_a_study_name_no_place() -> None:
+    row = Row(1, cells_of("50,30.5,7,15.2"))
+    assert place_columns(("lat_deg", "lat_min", "lon_deg", "lon_min"), [row]) is None
+    study = [Row(k, cells_of(f"350000,5540000,{k}N")) for k in (1, 2, 3)]
+    assert place_columns(("easting", "northing", "zone"), study) is None
+    assert place_columns(("easting", "northing", "zone"), study[:2]) is not None
