@@ -158,7 +158,8 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
     if len(first.cells) == 10:
         return _Columns(PlaceColumns(4, 5), bearing=2, sigma=None, tag=0, at=9, in_degrees=True), table.rows
     if len(first.cells) in (3, 4):
-        if first.number(0) is None or first.number(1) is None or _unlike_sigmas(table) or _counts_rows(table):
+        unread = first.number(0) is None or (first.cells[1] and first.number(1) is None)
+        if unread or _unlike_sigmas(table) or _counts_rows(table):
             raise table.columns_unknown(first, *EXPECTED)
         return _Columns(PlaceColumns(0, 1), bearing=2, sigma=3, tag=None), table.rows
     raise table.columns_unknown(first, *EXPECTED)

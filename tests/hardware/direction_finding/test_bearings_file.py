@@ -75,6 +75,7 @@ def test_plain_csv_with_and_without_header_and_sigma(tmp_path: Path, text: str) 
         ("50.1,7.2", 3, "", "bearing"),
         ("nan,7.2,3", 1, "nan", "latitude"),
         ("0,0,3", 1, "0", "latitude"),
+        ("50.1,,3", 2, "", "longitude"),
         ("50.1,7.2O,3", 2, "7.2O", "longitude"),
     ],
 )
