@@ -159,7 +159,7 @@ class UtmColumns:
 
 @dataclass(frozen=True, slots=True)
 class _Zone:
-    """band: the letter of eight degrees of latitude; empty: only the hemisphere is told."""
+    """band: the letter of eight degrees of latitude; empty: only the hemisphere is known."""
 
     number: int
     northern: bool
