@@ -43,5 +43,9 @@ export default defineConfig(({ command }) => ({
     rolldownOptions: { output: { codeSplitting: { groups: [map, bar, ...together] } } },
   },
   server: { host: "127.0.0.1", proxy: { "/api": { target: server, ws: true } } },
-  test: { setupFiles: ["src/i18n/forTests.ts"], include: ["src/**/*.test.ts", "src/**/*.test.tsx"] },
+  test: {
+    isolate: false,
+    setupFiles: ["src/freshForTests.ts", "src/i18n/forTests.ts"],
+    include: ["src/**/*.test.ts", "src/**/*.test.tsx"],
+  },
 }));
