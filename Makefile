@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage check check-types check-python check-page kernel kernel-of-plans kernel-of-beliefs bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit played system stories clean help fly-real screens
+.PHONY: run test coverage check check-types check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit played system stories clean help fly-real screens
 
 # The tests start some two hundred servers and vehicles: where no bytecode is kept, each compiles every source again.
 unexport PYTHONDONTWRITEBYTECODE
@@ -99,13 +99,9 @@ check-page: frontend/node_modules/.installed
 	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
-kernel: kernel-of-plans kernel-of-beliefs ## compiled once here, not by each test worker
-
-kernel-of-plans: setup-dev
-	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
-
-kernel-of-beliefs: setup-dev
-	$(BIN)/python -c "from threading import Event; from backend.wiring import compile_beliefs; compile_beliefs(Event())"
+# Both in one process: they share functions, which are kept on disk only inside of what calls them.
+kernel: setup-dev ## machine code of plans and beliefs, compiled once here, not by each test worker
+	$(BIN)/python -c "from threading import Event; from backend.wiring import compile_beliefs; from planner.plan import warm_up; warm_up(); compile_beliefs(Event())"
 
 # By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
 # tests/conftest.py holds the marks to the folders, so that no run has to import the others' tests.
