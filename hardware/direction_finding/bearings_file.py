@@ -3,10 +3,11 @@ sigma_deg])."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from hardware.direction_finding.plain_columns import names_power
+from hardware.direction_finding.plain_columns import ROUND_DEG, names_power, turned_deg
 from hardware.direction_finding.plain_units import LARGEST_RAD
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, plain_name
 from hardware.direction_finding.table_places import (
@@ -38,6 +39,8 @@ LATEST_S = 4_102_444_800.0
 """2100: no bearing was taken so late."""
 FEWEST_BEARINGS = 3
 """Fewer may well all lie within six degrees of north."""
+FEWEST_READINGS = 8
+"""Of an antenna's turn within ten metres; nobody takes so many bearings there, and in all directions."""
 EXPECTED = ("lat", "lon", "bearing_deg")
 EXPECTED_UTM = ("easting", "northing", "utm_zone", "bearing_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
@@ -91,7 +94,7 @@ class _Columns:
 
 def holds_bearings(table: Table) -> bool:
     """Rather than headings with power: its columns are named, or it has the ten of UAV-RT."""
-    if any(column_of(head.cells, *POWER) is None and _names_all(head) for head in table.heads):
+    if any(_names_all(head) and not _holds_a_turn(table, head) for head in table.heads):
         return True
     first = table.rows[0]
     return len(first.cells) == 10 and all(first.number(column) is not None for column in (2, 4, 5))
@@ -102,13 +105,29 @@ def _names_all(head: Row) -> bool:
     return _has(head, _BEARING) and (in_utm or _has(head, LATITUDE, LONGITUDE))
 
 
+def _holds_a_turn(table: Table, head: Row) -> bool:
+    """Whether it is power that the rows tell: by its name, or, where that may be a bearing's strength, since an antenna
+    was turned round at one place."""
+    if column_of(head.cells, *POWER) is not None:
+        return True
+    places, bearing = place_columns(head.cells, table.below(head)), column_of(head.cells, *_BEARING)
+    if places is None or bearing is None or not names_power(head.cells):
+        return False
+    around: dict[tuple[float, float], list[float]] = {}
+    for row in table.below(head):
+        place, value = places.place(row), row.number(bearing)
+        if isinstance(place, Place) and value is not None and math.isfinite(value):
+            around.setdefault((round(place.lat, 4), round(place.lon, 4)), []).append(value)
+    return any(len(turn) >= FEWEST_READINGS and turned_deg(turn) >= ROUND_DEG for turn in around.values())
+
+
 def _has(head: Row, *columns: Sequence[str]) -> bool:
     return all(column_of(head.cells, *names) is not None for names in columns)
 
 
 def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
     """Those of a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
-    if not holds_bearings(table) and (is_uavrt(table) or column_of(table.rows[0].cells, *POWER) is not None):
+    if not holds_bearings(table) and (is_uavrt(table) or names_power(table.rows[0].cells)):
         raise RecordingError(FileUnusable(str(table.path), "sweeps"))
     columns, rows = _columns(table)
     if not rows:

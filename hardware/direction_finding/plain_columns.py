@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
+
+import numpy as np
 
 from hardware.direction_finding.table_file import (
     RecordingError,
@@ -16,6 +19,7 @@ from hardware.direction_finding.table_file import (
     plain_name,
 )
 from hardware.direction_finding.table_places import Places, place_columns
+from hardware.direction_finding.table_tags import TAGS, frequency_column, frequency_hz, tags_in
 from hardware.reasons.table import FileUnusable, TooManyCells
 
 Unit = Literal["decibels", "linear", "unnamed"]
@@ -35,12 +39,14 @@ TURNS = ("sweep", "sweep_id", "rotation", "rotation_id", "turn", "turn_id", "pla
 EXPECTED = ("heading_deg", "power_db")
 
 HALF_TURN_DEG = 180.0
+ROUND_DEG = 240.0
+"""Of the circle that is a turn of its own: a finder uses no less of a whole turn."""
 
 
 @dataclass(frozen=True, slots=True)
 class Columns:
     """Indices from 0, None: there is none. width: how many columns there are, None: as many as a row likes. radians:
-    the heading's name says so. unit: what the power's name says."""
+    the heading's name says so. unit: what the power's name says. tags: by what cells of the tag's column say."""
 
     heading: int
     power: int
@@ -50,8 +56,21 @@ class Columns:
     time: int | None = None
     places: Places | None = None
     frequency: int | None = None
+    frequency_name: str = ""
     tag: int | None = None
+    tags: Mapping[str, str] = field(default_factory=dict[str, str])
     turns: tuple[int, ...] = ()
+
+    def tag_of(self, row: Row) -> str:
+        """Empty where the row names none."""
+        cell = "" if self.tag is None or self.tag >= len(row.cells) else row.cells[self.tag]
+        return self.tags.get(cell, cell)
+
+    def frequency_of(self, row: Row) -> float | None:
+        """In hertz; None where the row tells none."""
+        if self.frequency is None or self.frequency >= len(row.cells):
+            return None
+        return frequency_hz(self.frequency_name, row.cells[self.frequency])
 
 
 def columns_of(table: Table) -> tuple[Columns, tuple[Row, ...]]:
@@ -98,20 +117,43 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
     power = column_of(names, *POWER, *LINEAR)
     if heading is None or power is None or [*map(plain_name, names)].count(plain_name(names[power])) > 1:
         raise table.columns_unknown(header, *EXPECTED)
-    time, frequency = column_of(names, *_TIMES), column_of(names, "frequency_hz", "frequency")
-    tag, turns = column_of(names, "tag", "tag_id", "tagid"), [column_of(names, name) for name in TURNS]
+    frequency, turns = frequency_column(names), [column_of(names, name) for name in TURNS]
+    tag, tags = _tags(names, [row for row in rows if row.decibels(power) is not None], heading)
     return Columns(
         heading=heading,
         power=power,
         width=max(k for k, name in enumerate(names) if name) + 1,
         radians=plain_name(names[heading]) in RADIANS,
         unit=_unit(plain_name(names[power])),
-        time=time,
+        time=column_of(names, *_TIMES),
         places=place_columns(names, rows),
         frequency=frequency,
+        frequency_name="" if frequency is None else names[frequency],
         tag=tag,
+        tags=tags,
         turns=tuple(column for column in turns if column is not None),
     )
+
+
+def _tags(names: tuple[str, ...], rows: Sequence[Row], heading: int) -> tuple[int | None, Mapping[str, str]]:
+    """A column of tags; another, or frequencies, only where two of what they name went round: a receiver may write the
+    frequency of what it heard loudest just then."""
+    column, tags = tags_in(names, rows)
+    if column is None or column == column_of(names, *TAGS):
+        return column, tags
+    headings: dict[str, list[float]] = {}
+    for row in rows:
+        value, name = row.number(heading), tags.get(row.cells[column] if column < len(row.cells) else "")
+        if name is not None and value is not None and math.isfinite(value):
+            headings.setdefault(name, []).append(value)
+    round_of = [turned_deg(of_one) >= ROUND_DEG for of_one in headings.values()]
+    return (column, tags) if sum(round_of) > 1 else (None, {})
+
+
+def turned_deg(headings: Sequence[float]) -> float:
+    """Of the circle, without the widest gap in it; at least one heading, in degrees."""
+    around = np.sort(np.asarray(headings) % 360.0)
+    return 360.0 - float(np.max(np.diff(around, append=around[0] + 360.0)))
 
 
 def _unit(name: str) -> Unit:

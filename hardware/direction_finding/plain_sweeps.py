@@ -84,7 +84,7 @@ def _sweep(
 ) -> tuple[Sweep, bool] | None:
     """None, with a remark, where the tag was not heard."""
     line, wanted = turn[0].row.line, tag
-    tags = [_tag(one.row, columns) for one in turn]
+    tags = [columns.tag_of(one.row) for one in turn]
     named = Counter(name for name in tags if name)
     if named:
         wanted = named.most_common(1)[0][0] if tag is None else tag
@@ -98,7 +98,7 @@ def _sweep(
     found = place_of(turn)
     if found is not None and found[1] > ELSEWHERE_M:
         remarks.append(PlacesApart(file, line, found[1]))
-    frequencies = [value for one in turn if (value := _value(one.row, columns.frequency, 0.0)) != 0.0]
+    frequencies = [value for one in turn if (value := columns.frequency_of(one.row)) is not None]
     sweep = Sweep(
         at_s=np.array([one.at_s for one in turn]),
         heading_deg=np.array([one.heading_deg for one in turn]),
@@ -109,11 +109,6 @@ def _sweep(
         tag=wanted,
     )
     return sweep, found is not None
-
-
-def _tag(row: Row, columns: Columns) -> str:
-    """Empty where the row names none."""
-    return row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else ""
 
 
 def _place(row: Row, columns: Places | None) -> Place | None:

@@ -11,15 +11,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from hardware.direction_finding.plain_columns import HALF_TURN_DEG, HEADING, Columns
+from hardware.direction_finding.plain_columns import HALF_TURN_DEG, HEADING, ROUND_DEG, Columns, turned_deg
 from hardware.direction_finding.table_file import Row, column_of
 from hardware.frame import LocalFrame, middle_of
 from hardware.readings import Place
 
 ELSEWHERE_M = 20.0
 """A hovering vehicle stays nearer to where its turn began."""
-ROUND_DEG = 240.0
-"""Of the circle in a block of lines that is a turn of its own: a finder uses no less of a whole turn."""
 MOST_PLACES = 200
 """Of a table with more the rows were taken on the way."""
 
@@ -89,8 +87,7 @@ def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row], columns: Columns) 
     if sum(len(turn) > 1 and _turned_deg(turn) >= ROUND_DEG for turn in turns) < 2:
         return None
     turns = [turn for turn in turns if turn]
-    tag = columns.tag
-    tags = [{_cell(one, tag) for one in turn} for turn in turns] if tag is not None else []
+    tags = [{columns.tag_of(one.row) for one in turn} for turn in turns]
     return None if any(len(named) == 1 and named != tags[0] for named in tags) else turns
 
 
@@ -99,9 +96,7 @@ def _is_header(row: Row, columns: Columns) -> bool:
 
 
 def _turned_deg(turn: Sequence[HeardAt]) -> float:
-    """Of the circle, without the widest gap in it."""
-    headings = np.sort([one.heading_deg for one in turn])
-    return 360.0 - float(np.max(np.diff(headings, append=headings[0] + 360.0)))
+    return turned_deg([one.heading_deg for one in turn])
 
 
 def place_of(turn: Sequence[HeardAt]) -> tuple[Place, float] | None:

@@ -1,16 +1,21 @@
-"""Whose bearings the rows of a table are: by a column that names tags, collars or animals, or by their frequencies."""
+"""Whose bearings or readings the rows of a table are: by a column that names tags, collars or animals, or by their
+frequencies."""
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection, Sequence
 
-from hardware.direction_finding.table_file import Row, column_of, number_of
+from hardware.direction_finding.table_file import Row, column_of, number_of, plain_name
 
-_TAGS = ("tag", "tag_id", "tagid")
+TAGS = ("tag", "tag_id", "tagid")
 _OTHERS = ("transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
 _FREQUENCIES = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
-_UNIT = re.compile(r" ?[kMG]?Hz$", re.IGNORECASE)
+_UNIT = re.compile(r" ?([kMG]?)Hz$", re.IGNORECASE)
+_HZ = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
+_MOST_MHZ = 30e3
+"""A number without a unit is no more than this in MHz: nobody listens below 30 kHz."""
 SAME_FREQUENCY = 1e-5
 """Of a frequency: a tag's own drifts by so much (1.5 kHz of 150 MHz); others are 5 kHz away and more."""
 
@@ -19,19 +24,35 @@ def tags_in(names: tuple[str, ...], rows: Sequence[Row]) -> tuple[int | None, di
     """The column of tags if it names one in each row, else the one that names most, and the tags by its cells. A single
     frequency names none."""
     best: tuple[int | None, dict[str, str]] = None, {}
-    for name in (*_TAGS, *_OTHERS, *_FREQUENCIES):
+    for name in (*TAGS, *_OTHERS, *_FREQUENCIES):
         column = column_of(names, name)
         if column is None:
             continue
         cells = {row.cells[column] if column < len(row.cells) else "" for row in rows}
         told = cells - {""}
         tags = _frequencies(told) if name in _FREQUENCIES else {cell: cell for cell in told}
-        if name in _TAGS and told == cells:
+        if name in TAGS and told == cells:
             return column, tags
         several = len(set(tags.values()))
         if several > max(len(set(best[1].values())), name in _FREQUENCIES):
             best = column, tags
     return best
+
+
+def frequency_column(names: tuple[str, ...]) -> int | None:
+    """Index of the column that says what was listened to."""
+    return column_of(names, *_FREQUENCIES)
+
+
+def frequency_hz(name: str, cell: str) -> float | None:
+    """What a cell of the column `name` says, in the unit behind it or the one that the column names; None: nothing."""
+    value = number_of(_UNIT.sub("", cell))
+    if value is None or not 0.0 < value < math.inf:
+        return None
+    unit = _UNIT.search(cell) or _UNIT.search(plain_name(name).replace("_", " "))
+    if unit is None:
+        return value * (_HZ["m"] if value < _MOST_MHZ else 1.0)
+    return value * _HZ[unit[1].lower()]
 
 
 def _frequencies(cells: Collection[str]) -> dict[str, str]:

@@ -208,3 +208,26 @@ def test_a_named_table_of_ten_columns_holds_bearings(tmp_path: Path) -> None:
     assert holds_bearings(read_table(written(tmp_path, f"{header}\n{row}\n")))
     sweep = written(tmp_path, f"{header.replace('notes', 'level')}\n{row.replace('weak', '-60')}\n")
     assert not holds_bearings(read_table(sweep))
+
+
+def test_an_antenna_that_was_turned_at_one_place_is_no_list_of_bearings(tmp_path: Path) -> None:
+    rows = [f"{azimuth},{azimuth % 50},{47.0 + azimuth * 1e-8:.7f},8.5" for azimuth in range(0, 360, 10)]
+    path = written(tmp_path, "\n".join(["azimuth,snr,lat,lon", *rows]))
+    assert not holds_bearings(read_table(path))
+    with refusing(FileUnusable(str(path), "sweeps"), RecordingError):
+        read_bearings(path)
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["10,20,47.0,8.5", "130,22,47.001,8.5", "250,9,47.0,8.502"],
+        [f"{80 + k},{k},47.0,8.5" for k in range(10)],
+        [f"{36 * k},12,{47 + k * 1e-3},8.5" for k in range(10)],
+    ],
+    ids=["three places", "one direction", "ten places round it"],
+)
+def test_bearings_with_their_strengths_are_bearings(rows: list[str], tmp_path: Path) -> None:
+    table = read_table(written(tmp_path, "\n".join(["azimuth,snr,lat,lon", *rows])))
+    assert holds_bearings(table)
+    assert len(bearings_in(table).bearings) == len(rows)

@@ -52,3 +52,42 @@ def test_a_tag_that_only_one_turn_heard_gives_that_one_sweep(two_tags: Path) -> 
     recording = read_recording(two_tags, "B")
     assert [recorded.sweep.tag for recorded in recording.sweeps] == ["B"]
     assert recording.remarks == (TagNotHeard(str(two_tags), 2, "B", ("A",)),)
+
+
+def turn_of(names: str, rows: list[str], path: Path) -> Path:
+    path.write_text("\n".join([names, *rows]))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "one", "other", "tag"),
+    [
+        ("Frequency (MHz)", "150.1001", "150.2", "150.2"),
+        ("freq_khz", "150100", "150200", "150200"),
+        ("frequency", "150.1 MHz", "150.2 MHz", "150.2"),
+        ("Freq", "150.1", "150.2", "150.2"),
+    ],
+)
+def test_what_was_heard_at_another_frequency_is_another_tag(
+    name: str, one: str, other: str, tag: str, tmp_path: Path
+) -> None:
+    rows = [f"{heading},-60,{one}" for heading in range(0, 360, 10)]
+    rows += [f"{heading},-70,{other}" for heading in range(0, 360, 5)]
+    recording = read_recording(turn_of(f"heading_deg,power_db,{name}", rows, tmp_path / "turn.csv"))
+    (recorded,) = recording.sweeps
+    assert (recorded.sweep.tag, recorded.sweep.power_db.tolist()) == (tag, [-70.0] * 72)
+    assert recorded.sweep.frequency_hz == pytest.approx(150.2e6)
+    assert [type(remark) for remark in recording.remarks] == [OtherTagsLeftOut]
+
+
+def test_the_frequency_of_whatever_was_loudest_is_no_tag(tmp_path: Path) -> None:
+    rows = [f"{heading},-60,{150_000_000 + 100 * heading}" for heading in range(0, 360, 10)]
+    recording = read_recording(turn_of("heading_deg,power_db,frequency_hz", rows, tmp_path / "turn.csv"))
+    assert [len(recorded.sweep.power_db) for recorded in recording.sweeps] == [36]
+    assert recording.sweeps[0].sweep.frequency_hz == pytest.approx(150_017_500)
+
+
+def test_collars_that_went_round_one_after_another_are_not_one_turn(tmp_path: Path) -> None:
+    rows = [f"{collar},{heading},-60" for collar in ("lynx", "hare") for heading in range(0, 360, 10)]
+    path = turn_of("Collar,heading_deg,power_db", rows, tmp_path / "turn.csv")
+    assert [one.sweep.power_db.size for one in read_recording(path, "hare").sweeps] == [36]
