@@ -138,8 +138,9 @@ fuzz: setup-dev build kernel ## 100,000 odd requests and messages to a running s
 load: setup-dev build ## a hundred viewers, five of them stalled: latency and memory over ten minutes
 	$(BIN)/python -m tests.benchmarks.live_load fanout --seconds 600 --out $(MEASUREMENTS)
 
-page-load: setup-dev build browser ## the page: belief on screen, frames at 20 Hz, memory in replay, bytes per minute: an hour and a half
+page-load: setup-dev build browser ## the page: after a start, belief on screen, frames at 20 Hz, memory in replay, bytes per minute: an hour and a half
 	$(BIN)/python -m tests.benchmarks.page_weight --out $(MEASUREMENTS)
+	$(BIN)/python -m tests.benchmarks.page_start --out $(MEASUREMENTS)
 	$(BIN)/python -m tests.benchmarks.page_belief --bearings 20 --out $(MEASUREMENTS)
 	$(BIN)/python -m tests.benchmarks.page_frames --minutes 10 --out $(MEASUREMENTS)
 	$(BIN)/python -m tests.benchmarks.page_bytes --minutes 5 --out $(MEASUREMENTS)

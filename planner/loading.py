@@ -6,7 +6,7 @@ import gc
 import importlib
 from types import ModuleType
 
-PATIENT = 100_000
+PATIENT = 1_000_000
 """New objects before the collector looks, instead of its 700."""
 
 

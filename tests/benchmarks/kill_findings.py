@@ -76,8 +76,11 @@ def figures(found: Findings, runs: Table, database: str, load_before: float) -> 
     """Counts of all runs, times of a whole start of this one. load_before: the machine's own, without this benchmark;
     it says which bound a whole start has."""
     note = f"{len(runs.rows)} runs together" if len(runs.rows) > 1 else ""
+    forked, killed = numbers(runs, f"{FORKED}: most"), count(runs, "kills")
     made = [
-        wanted("kills", count(runs, "kills"), of=database, note=note),
+        wanted("kills", killed, of=database, note=note)
+        if forked
+        else plain("kills -9 before whole starts", killed, ""),
         wanted("kill_lost", count(runs, "lost or changed"), of=database, note=note),
         wanted("kill_beliefs", count(runs, "changed"), of=database, note=note),
         plain("acknowledged facts", count(runs, "facts shown before a kill"), ""),
@@ -85,8 +88,8 @@ def figures(found: Findings, runs: Table, database: str, load_before: float) -> 
         plain("beliefs compared", count(runs, "beliefs compared"), ""),
         plain("failsafes taken for a pilot", count(runs, "taken for a pilot"), ""),
     ]
-    if most := numbers(runs, f"{FORKED}: most"):
-        made.append(wanted("restart", round(max(most), 2), of=database, note=note))
+    if forked:
+        made.append(wanted("restart", round(max(forked), 2), of=database, note=note))
     made += _whole_starts(found, database, load_before)
     return made
 
