@@ -19,7 +19,7 @@ from hardware.direction_finding.table_file import (
     plain_name,
 )
 from hardware.direction_finding.table_places import Places, place_columns
-from hardware.direction_finding.table_tags import TAGS, frequency_column, frequency_hz, tags_in
+from hardware.direction_finding.table_tags import FREQUENCIES, OTHERS, TAGS, frequency_hz, tags_in
 from hardware.reasons.table import FileUnusable, TooManyCells
 
 Unit = Literal["decibels", "linear", "unnamed"]
@@ -117,8 +117,8 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
     power = column_of(names, *POWER, *LINEAR)
     if heading is None or power is None or [*map(plain_name, names)].count(plain_name(names[power])) > 1:
         raise table.columns_unknown(header, *EXPECTED)
-    frequency, turns = frequency_column(names), [column_of(names, name) for name in TURNS]
-    tag, tags = _tags(names, [row for row in rows if row.decibels(power) is not None], heading)
+    frequency, turns = column_of(names, *FREQUENCIES), [column_of(names, name) for name in TURNS]
+    tag, tags = _tags(names, rows, heading, power)
     return Columns(
         heading=heading,
         power=power,
@@ -135,12 +135,18 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
     )
 
 
-def _tags(names: tuple[str, ...], rows: Sequence[Row], heading: int) -> tuple[int | None, Mapping[str, str]]:
-    """A column of tags; another, or frequencies, only where two of what they name went round: a receiver may write the
-    frequency of what it heard loudest just then."""
+def _tags(
+    names: tuple[str, ...], rows: Sequence[Row], heading: int, power: int
+) -> tuple[int | None, Mapping[str, str]]:
+    """A column of tags; without one another, or frequencies, where two of what they name went round: a receiver may
+    write the frequency of what it heard loudest just then."""
+    named = column_of(names, *TAGS)
+    if named is not None or column_of(names, *OTHERS, *FREQUENCIES) is None:
+        return named, {}
+    rows = [row for row in rows if row.decibels(power) is not None]
     column, tags = tags_in(names, rows)
-    if column is None or column == column_of(names, *TAGS):
-        return column, tags
+    if column is None:
+        return None, {}
     headings: dict[str, list[float]] = {}
     for row in rows:
         value, name = row.number(heading), tags.get(row.cells[column] if column < len(row.cells) else "")

@@ -10,8 +10,8 @@ from collections.abc import Collection, Sequence
 from hardware.direction_finding.table_file import Row, column_of, number_of, plain_name
 
 TAGS = ("tag", "tag_id", "tagid")
-_OTHERS = ("transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
-_FREQUENCIES = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
+OTHERS = ("transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
+FREQUENCIES = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
 _UNIT = re.compile(r" ?([kMG]?)Hz$", re.IGNORECASE)
 _HZ = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 _MOST_MHZ = 30e3
@@ -24,24 +24,19 @@ def tags_in(names: tuple[str, ...], rows: Sequence[Row]) -> tuple[int | None, di
     """The column of tags if it names one in each row, else the one that names most, and the tags by its cells. A single
     frequency names none."""
     best: tuple[int | None, dict[str, str]] = None, {}
-    for name in (*TAGS, *_OTHERS, *_FREQUENCIES):
+    for name in (*TAGS, *OTHERS, *FREQUENCIES):
         column = column_of(names, name)
         if column is None:
             continue
         cells = {row.cells[column] if column < len(row.cells) else "" for row in rows}
         told = cells - {""}
-        tags = _frequencies(told) if name in _FREQUENCIES else {cell: cell for cell in told}
+        tags = _frequencies(told) if name in FREQUENCIES else {cell: cell for cell in told}
         if name in TAGS and told == cells:
             return column, tags
         several = len(set(tags.values()))
-        if several > max(len(set(best[1].values())), name in _FREQUENCIES):
+        if several > max(len(set(best[1].values())), name in FREQUENCIES):
             best = column, tags
     return best
-
-
-def frequency_column(names: tuple[str, ...]) -> int | None:
-    """Index of the column that says what was listened to."""
-    return column_of(names, *_FREQUENCIES)
 
 
 def frequency_hz(name: str, cell: str) -> float | None:

@@ -91,3 +91,10 @@ def test_collars_that_went_round_one_after_another_are_not_one_turn(tmp_path: Pa
     rows = [f"{collar},{heading},-60" for collar in ("lynx", "hare") for heading in range(0, 360, 10)]
     path = turn_of("Collar,heading_deg,power_db", rows, tmp_path / "turn.csv")
     assert [one.sweep.power_db.size for one in read_recording(path, "hare").sweeps] == [36]
+
+
+def test_a_column_of_tags_counts_before_frequencies(two_tags: Path) -> None:
+    lines = two_tags.read_text().splitlines()
+    mended = [lines[0] + ",frequency_mhz", *(f"{line},{150.1 + 0.1 * (k % 2)}" for k, line in enumerate(lines[1:]))]
+    two_tags.write_text("\n".join(mended))
+    assert [one.sweep.power_db.size for one in read_recording(two_tags, "A").sweeps] == [36]
