@@ -77,7 +77,8 @@ def _by_place(heard: Sequence[HeardAt]) -> list[list[HeardAt]] | None:
 
 
 def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row], columns: Columns) -> list[list[HeardAt]] | None:
-    """None unless it went round in several blocks of lines; blocks of one tag each are not several turns."""
+    """None unless it went round in several blocks of lines; blocks of one tag each are not several turns,
+    where a column of tags says so."""
     begins = [
         after.line for before, after in pairwise(rows) if after.line - before.line > 1 or _is_header(after, columns)
     ]
@@ -87,6 +88,8 @@ def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row], columns: Columns) 
     if sum(len(turn) > 1 and _turned_deg(turn) >= ROUND_DEG for turn in turns) < 2:
         return None
     turns = [turn for turn in turns if turn]
+    if columns.tags:
+        return turns
     tags = [{columns.tag_of(one.row) for one in turn} for turn in turns]
     return None if any(len(named) == 1 and named != tags[0] for named in tags) else turns
 

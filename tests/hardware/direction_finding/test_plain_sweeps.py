@@ -98,3 +98,9 @@ def test_a_column_of_tags_counts_before_frequencies(two_tags: Path) -> None:
     mended = [lines[0] + ",frequency_mhz", *(f"{line},{150.1 + 0.1 * (k % 2)}" for k, line in enumerate(lines[1:]))]
     two_tags.write_text("\n".join(mended))
     assert [one.sweep.power_db.size for one in read_recording(two_tags, "A").sweeps] == [36]
+
+
+def test_blocks_of_one_collar_each_stay_apart(tmp_path: Path) -> None:
+    blocks = [[f"{collar},{heading},-60" for heading in range(0, 360, 10)] for collar in ("lynx", "hare")]
+    path = turn_of("collar,heading_deg,power_db", [*blocks[0], "", *blocks[1]], tmp_path / "turn.csv")
+    assert [one.sweep.tag for one in read_recording(path).sweeps] == ["lynx", "hare"]
