@@ -295,7 +295,7 @@ def wilson(successes: float, trials: float, z: float = 1.96) -> tuple[float, flo
     share, square = successes / trials, z * z / trials
     middle = (share + square / 2.0) / (1.0 + square)
     half = z * np.sqrt(share * (1.0 - share) / trials + square / (4.0 * trials)) / (1.0 + square)
-    return float(middle - half), float(middle + half)
+    return max(0.0, float(middle - half)), min(1.0, float(middle + half))
 
 
 def row_named(name: str) -> Row:

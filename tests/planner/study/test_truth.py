@@ -177,3 +177,5 @@ def test_tags_of_one_mission_hang_together():
 def test_wilsons_interval():
     """Newcombe 1998, table I: 81 of 263."""
     assert wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-4)
+    assert str(wilson(0, 60)[0]) == "0.0"  # not "-0.0"
+    assert wilson(60, 60)[1] == pytest.approx(1.0)
