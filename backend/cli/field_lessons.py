@@ -5,7 +5,7 @@ from __future__ import annotations
 from backend.cli.field_missions import CRAFT_ID, FieldStudy
 from backend.events import CraftSource
 from backend.search.planner_bearings import source_name
-from backend.search.source_priors import learned_errors, unknown_errors
+from backend.search.source_priors import learned_errors, unknown_craft
 from planner.belief.joint import JointBelief
 from planner.belief.learning import flight_evidence, learned
 from planner.belief.source_errors import ErrorPrior
@@ -24,7 +24,7 @@ def taught(study: FieldStudy, flights: int) -> FieldStudy:
     """
     if flights and study.options.errors != "joint":
         raise StudyError("only flights whose errors are estimated with the place teach anything of them")
-    unknown = unknown_errors(study.spec.sensor.outlier_probability)
+    unknown = unknown_craft(study.spec.sensor.outlier_probability)
     found, now = list[FloatArray](), study
     for seed in range(FIRST_LESSON, FIRST_LESSON + flights):
         _, belief = now.flown(seed)

@@ -11,7 +11,7 @@ import typer
 from backend.api.suggestion import suggested_mission
 from backend.cli.edge import print_json, remark, stop
 from backend.search.localization import localization
-from backend.search.source_priors import unknown_errors
+from backend.search.source_priors import unknown_craft
 from hardware.readings import Place
 from planner.study.errors import StudyError
 from planner.study.moving import SPEEDS, moving_missions
@@ -116,7 +116,7 @@ def row_claims(
     places = _check(row, model, flights, told, planner, shared)
     wanted = None if row in SPEEDS or row in TAGS else row_named(row)
     mission = suggested_mission(HOME)
-    prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
+    prior, knows = unknown_craft(mission.sensor.outlier_probability), UNKNOWN
     task = localization(mission, HOME)
     problem = replace(task.problem, measurement_time=MEASUREMENT_S)
     search = Search(problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings, places)

@@ -18,7 +18,7 @@ from backend.ports import Lesson, Said
 from backend.search.emitter import EmitterState
 from backend.search.localization import Localization
 from backend.search.planner_bearings import source_name
-from backend.search.source_priors import learned_errors, unknown_errors
+from backend.search.source_priors import learned_errors, unknown_craft
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.spec import LearnedErrors, MissionSpec, SensorSpec
@@ -126,7 +126,7 @@ def lesson_of_check(mission_id: str, checked: AntennaChecked, sensor: SensorSpec
     if not checked.check.ok or not isinstance(agrees, AntennaAgrees):
         return None
     off_deg = (agrees.measured_deg - agrees.true_deg + 180.0) % 360.0 - 180.0
-    prior = unknown_errors(sensor.outlier_probability)
+    prior = unknown_craft(sensor.outlier_probability)
     bearing = Bearing(0.0, 0.0, math.radians(-off_deg), math.radians(CHECK_SIGMA_DEG))
     log = evidence_at([bearing], prior, (KNOWN_M, 0.0))
     of_spread = np.log(np.exp(log) @ prior.rate_weight @ prior.scale_weight)
@@ -142,7 +142,7 @@ def _said(values: FloatArray, log: FloatArray) -> tuple[Said, ...]:
 
 def errors_now(lessons: Sequence[Lesson], sensor: SensorSpec, craft_id: str, antenna: str) -> LearnedErrors:
     """What a mission with this sensor starts from, after these flights (oldest first) of the craft and antenna."""
-    unknown = unknown_errors(sensor.outlier_probability)
+    unknown = unknown_craft(sensor.outlier_probability)
     newest = lessons[-LESSONS_KEPT:]
     evidence = [_evidence_for(one, sensor.bearing_offset_deg, unknown) for one in newest]
     return learned_errors(learned(evidence, unknown), len(newest), craft_id, antenna)

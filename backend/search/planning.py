@@ -22,6 +22,7 @@ from hardware.readings import Place
 from planner.belief.grid import GridBelief
 from planner.belief.joint import SMALLEST_SIGMA, JointBelief
 from planner.belief.moving import MovingBelief
+from planner.belief.source_errors import fielded_spread
 from planner.belief.verdict import missing_crossing
 from planner.legs import flown_by_legs
 from planner.movement import FLIGHT_S
@@ -215,14 +216,14 @@ def _worn(sigma: float, measured: Sequence[BearingMeasured], belief: MovingBelie
 
 
 def _learned_share(sigma: float, belief: JointBelief) -> float:
-    """Expected error of a bearing after what was learned of its source, over that of one nobody knows; 1 when nothing
+    """Expected error of a bearing after what was learned of its craft, over that of one that never flew; 1 when nothing
     was, or when several sources are known."""
     if len(belief.priors) != 1:
         return 1.0
     (known,) = belief.priors.values()
     learned, unknown = (
         math.hypot(sigma * math.sqrt(prior.scale_weight @ prior.scale**2), prior.bias_sd)
-        for prior in (known, belief.otherwise)
+        for prior in (known, fielded_spread(belief.otherwise))
     )
     return learned / unknown
 

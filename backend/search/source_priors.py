@@ -13,7 +13,7 @@ import numpy as np
 
 from backend.spec import LearnedErrors, SensorSpec
 from planner.belief.joint import UNKNOWN_SOURCE
-from planner.belief.source_errors import ErrorPrior, evenly_spread
+from planner.belief.source_errors import ErrorPrior, evenly_spread, fielded_spread
 
 FEWEST_OUTLIERS = 0.01
 MOST_OUTLIERS = 0.6
@@ -40,6 +40,11 @@ compare: journals fold to what they were. One rate is that of a sensor without o
 def unknown_errors(outlier_probability: float) -> ErrorPrior:
     """Of a source of which nothing is known, with values that leave room to learn."""
     return evenly_spread(_unknown(RATES, RATE_WEIGHTS, outlier_probability))
+
+
+def unknown_craft(outlier_probability: float) -> ErrorPrior:
+    """Of a craft that has not flown: the same, but its compass is one of those that fly."""
+    return fielded_spread(unknown_errors(outlier_probability))
 
 
 def _unknown(rates: Sequence[float], weights: Sequence[float], outlier_probability: float) -> ErrorPrior:

@@ -28,6 +28,8 @@ FINEST_SPACING = np.deg2rad(0.25)
 COARSEST_SPACING = np.deg2rad(2.5)
 EVEN_STEP = np.deg2rad(1.0)
 """Of the bias, at which stretches of way are weighed; a power of two of nodes lies in it where a source heard any."""
+FIELDED_BIAS = np.deg2rad(5.3)
+"""Standard deviation, from flight to flight, of what compasses in the field were off by."""
 NEGLIGIBLE_WEIGHT = 1e-7
 """Nodes at the ends of the range that are less probable than this are left out."""
 
@@ -68,6 +70,13 @@ def evenly_spread(prior: ErrorPrior) -> ErrorPrior:
     middles = 0.5 * (prior.spread[1:] + prior.spread[:-1])
     top = 2.0 * prior.spread[-1] - middles[-1] if len(middles) else 2.0 * prior.spread[-1]
     weight = prior.spread_weight * np.diff(np.concatenate([[0.0], middles, [top]]))
+    return replace(prior, spread_weight=weight / weight.sum())
+
+
+def fielded_spread(prior: ErrorPrior) -> ErrorPrior:
+    """The prior with each standard deviation tau of the bias weighed by exp(-tau^2 / (2 FIELDED_BIAS^2)), which makes
+    an even prior of tau a half-normal one with the scale of compasses in the field (Gelman 2006)."""
+    weight = prior.spread_weight * np.exp(-0.5 * (prior.spread / FIELDED_BIAS) ** 2)
     return replace(prior, spread_weight=weight / weight.sum())
 
 

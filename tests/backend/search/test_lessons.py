@@ -215,7 +215,7 @@ def test_other_sources_are_assumed_to_be_what_they_were_when_the_mission_was_wri
     assert others[2].rate == pytest.approx([0.003, 0.02, 0.05, 0.1, 0.2, 0.5])
     for before in others[:2]:
         assert before.spread_weight == pytest.approx([1 / 6] * 6)
-    assert others[2].spread_weight == pytest.approx(learned.spread_weight)
+    assert others[2].spread_weight == pytest.approx([w / 12 for w in (0.75, 0.75, 1.25, 2, 3.25, 4)])
 
 
 def test_a_mission_of_before_without_outliers_assumes_the_same_of_others_as_it_did() -> None:

@@ -347,13 +347,15 @@ def test_an_emitter_first_heard_late_knows_the_compass_at_once() -> None:
         assert now.bias_std_error_deg == pytest.approx(then.bias_std_error_deg, abs=0.3)
 
 
-def test_what_a_compass_may_be_off_by_is_weighed_by_range() -> None:
-    """Of one emitter as of several: equal weights pile up at a compass that is right."""
+def test_what_a_compass_may_be_off_by_is_half_normal() -> None:
+    """With the scale of fielded compasses, by the range that each value stands for; of one emitter as of several."""
     one = SPEC.model_copy(update={"emitters": EMITTERS[:1]})
     several, single = (knowing(spec, [], "craft-1", "yagi").sensor.learned for spec in (SPEC, one))
     assert several == single
     assert single is not None
-    assert single.spread_weight == pytest.approx(np.array([0.75, 0.75, 1.25, 2.0, 3.25, 4.0]) / 12.0)
+    stands_for = np.array([0.75, 0.75, 1.25, 2.0, 3.25, 4.0])
+    weight = stands_for * np.exp(-0.5 * (np.array([0.5, 1.0, 2.0, 3.5, 6.0, 10.0]) / 5.3) ** 2)
+    assert single.spread_weight == pytest.approx(weight / weight.sum())
     # a mission keeps the weights that it was drafted with
     stored = SPEC.having_learned(single)
     assert MissionSpec.model_validate_json(stored.model_dump_json()).sensor.learned == single
