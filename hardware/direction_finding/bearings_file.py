@@ -4,8 +4,12 @@ sigma_deg])."""
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
 
 from hardware.direction_finding.plain_columns import ROUND_DEG, names_power, turned_deg
 from hardware.direction_finding.plain_units import LARGEST_RAD
@@ -21,6 +25,7 @@ from hardware.direction_finding.table_places import (
 )
 from hardware.direction_finding.table_tags import tags_in
 from hardware.direction_finding.uavrt import is_uavrt
+from hardware.frame import LocalFrame
 from hardware.readings import Place
 from hardware.reasons.table import (
     CellUnusable,
@@ -40,7 +45,9 @@ LATEST_S = 4_102_444_800.0
 FEWEST_BEARINGS = 3
 """Fewer may well all lie within six degrees of north."""
 FEWEST_READINGS = 8
-"""Of an antenna's turn within ten metres; nobody takes so many bearings there, and in all directions."""
+HOVERS_M = 10.0
+"""Of an antenna's turn: so many readings within so much of the first. Nobody takes as many bearings there, and in all
+directions; who walks or rows around an animal does so from further away."""
 EXPECTED = ("lat", "lon", "bearing_deg")
 EXPECTED_UTM = ("easting", "northing", "utm_zone", "bearing_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
@@ -94,7 +101,8 @@ class _Columns:
 
 def holds_bearings(table: Table) -> bool:
     """Rather than headings with power: its columns are named, or it has the ten of UAV-RT."""
-    if any(_names_all(head) and not _holds_a_turn(table, head) for head in table.heads):
+    heads = {head.cells: head for head in reversed(table.heads)}
+    if any(_names_all(head) and not _holds_a_turn(table, head) for head in heads.values()):
         return True
     first = table.rows[0]
     return len(first.cells) == 10 and all(first.number(column) is not None for column in (2, 4, 5))
@@ -113,12 +121,33 @@ def _holds_a_turn(table: Table, head: Row) -> bool:
     places, bearing = place_columns(head.cells, table.below(head)), column_of(head.cells, *_BEARING)
     if places is None or bearing is None or not names_power(head.cells):
         return False
-    around: dict[tuple[float, float], list[float]] = {}
-    for row in table.below(head):
-        place, value = places.place(row), row.number(bearing)
-        if isinstance(place, Place) and value is not None and math.isfinite(value):
-            around.setdefault((round(place.lat, 4), round(place.lon, 4)), []).append(value)
-    return any(len(turn) >= FEWEST_READINGS and turned_deg(turn) >= ROUND_DEG for turn in around.values())
+    told = [(row.number(bearing), places.place(row)) for row in table.below(head)]
+    taken = [
+        (value, place)
+        for value, place in told
+        if value is not None and math.isfinite(value) and isinstance(place, Place)
+    ]
+    turns = _taken_together([place for _, place in taken])
+    around = [[taken[k][0] for k in turn] for turn in turns]
+    return any(len(turn) >= FEWEST_READINGS and turned_deg(turn) >= ROUND_DEG for turn in around)
+
+
+def _taken_together(places: Sequence[Place]) -> list[list[int]]:
+    """Which were taken within HOVERS_M of the first of them."""
+    if not places:
+        return []
+    points = LocalFrame(places[0]).to_enu_points(np.array([(place.lon, place.lat) for place in places]))
+    together: list[list[int]] = []
+    begun: dict[tuple[int, int], list[int]] = defaultdict(list)
+    squares = np.floor(points / HOVERS_M).astype(int).tolist()
+    for k, (point, (x, y)) in enumerate(zip(points.tolist(), squares, strict=True)):
+        near = (number for square in product((x - 1, x, x + 1), (y - 1, y, y + 1)) for number in begun.get(square, ()))
+        now = next((n for n in near if math.dist(point, points[together[n][0]]) <= HOVERS_M), len(together))
+        if now == len(together):
+            together.append([])
+            begun[x, y].append(now)
+        together[now].append(k)
+    return together
 
 
 def _has(head: Row, *columns: Sequence[str]) -> bool:
@@ -127,7 +156,9 @@ def _has(head: Row, *columns: Sequence[str]) -> bool:
 
 def bearings_in(table: Table, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
     """Those of a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
-    if not holds_bearings(table) and (is_uavrt(table) or names_power(table.rows[0].cells)):
+    if not holds_bearings(table) and (
+        is_uavrt(table) or any(map(_names_all, table.heads)) or names_power(table.rows[0].cells)
+    ):
         raise RecordingError(FileUnusable(str(table.path), "sweeps"))
     columns, rows = _columns(table)
     if not rows:

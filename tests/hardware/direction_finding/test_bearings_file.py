@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from refusals import refusing
 
+from hardware.direction_finding import bearings_file
 from hardware.direction_finding.bearings_file import (
     DEFAULT_SIGMA_DEG,
     EXPECTED,
@@ -14,7 +17,8 @@ from hardware.direction_finding.bearings_file import (
     bearings_in,
     holds_bearings,
 )
-from hardware.direction_finding.table_file import RecordingError, read_table
+from hardware.direction_finding.table_file import RecordingError, Row, read_table
+from hardware.direction_finding.table_places import Places, place_columns
 from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnusable, HeadingsInRadians, Quantity, TooManyCells
 
 
@@ -231,3 +235,44 @@ def test_bearings_with_their_strengths_are_bearings(rows: list[str], tmp_path: P
     table = read_table(written(tmp_path, "\n".join(["azimuth,snr,lat,lon", *rows])))
     assert holds_bearings(table)
     assert len(bearings_in(table).bearings) == len(rows)
+
+
+@pytest.mark.parametrize("drift_m", [1.5, 3.0, 14.0])
+@pytest.mark.parametrize("power", ["signal_strength", "level", "snr"])
+def test_a_turn_that_drifts_is_no_list_of_bearings(drift_m: float, power: str, tmp_path: Path) -> None:
+    rows = [f"{a},{a % 50},{50.10004 + a / 360 * drift_m / 111e3:.7f},7.20004" for a in range(0, 360, 10)]
+    path = written(tmp_path, "\n".join([f"azimuth,{power},lat,lon", *rows]))
+    with refusing(FileUnusable(str(path), "sweeps"), RecordingError):
+        read_bearings(path)
+
+
+def test_bearings_from_all_around_with_their_strengths_are_bearings(tmp_path: Path) -> None:
+    """From 40 m away, every 14 m."""
+    angles = [math.radians(20 * k) for k in range(18)]
+    rows = [
+        f"{math.degrees(a):.0f},9,{50 - 40 / 111.2e3 * math.cos(a):.7f},{7 - 40 / 71.7e3 * math.sin(a):.7f}"
+        for a in angles
+    ]
+    assert holds_bearings(read_table(written(tmp_path, "\n".join(["azimuth,snr,lat,lon", *rows]))))
+
+
+@pytest.mark.parametrize("above", ["# ", "Survey 1 May\n", "# Survey, 1 May\n# "])
+@pytest.mark.parametrize("power", ["rssi_dbm", "power_db", "level"])
+def test_sweeps_below_a_comment_or_a_title_are_no_bearings(above: str, power: str, tmp_path: Path) -> None:
+    rows = "\n".join(f"{azimuth},{azimuth % 50},50.1,7.2" for azimuth in range(0, 360, 10))
+    path = written(tmp_path, f"{above}azimuth,{power},lat,lon\n{rows}")
+    with refusing(FileUnusable(str(path), "sweeps"), RecordingError):
+        read_bearings(path)
+
+
+def test_a_header_that_is_repeated_is_looked_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at: list[tuple[str, ...]] = []
+
+    def counted(names: tuple[str, ...], rows: Sequence[Row]) -> Places | None:
+        looked_at.append(names)
+        return place_columns(names, rows)
+
+    monkeypatch.setattr(bearings_file, "place_columns", counted)
+    block = "\n".join(["# azimuth,snr,lat,lon", *(f"{azimuth},9,50.1,7.2" for azimuth in range(0, 360, 20))])
+    assert not holds_bearings(read_table(written(tmp_path, "\n".join([block] * 20))))
+    assert len(looked_at) == 1
