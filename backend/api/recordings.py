@@ -59,11 +59,11 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 class RecordingForm(Model):
     """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
-    wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), whose bearings in a file of those
-    (needed when it holds several), else the sweep's name. offset_deg: the antenna's front, clockwise of the nose.
-    antenna: the pattern of the antenna that took the sweeps (as in hardware.direction_finding.pattern_file), None: ours
-    did. emitter_id: whose sweeps these are, None: the first emitter's; of bearings: that of the only emitter, or of the
-    only one on the file's frequency.
+    wrongly. tag: whose pulses count (default: the tag heard most; needed where that is not the same one in each turn),
+    whose bearings in a file of those (needed when it holds several), else the sweep's name. offset_deg: the antenna's
+    front, clockwise of the nose. antenna: the pattern of the antenna that took the sweeps (as in
+    hardware.direction_finding.pattern_file), None: ours did. emitter_id: whose sweeps or bearings these are, None: the
+    only emitter's, or those of the only one on the file's frequency.
     frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ."""
 
     files: list[UploadFile]

@@ -26,6 +26,7 @@ from backend.reasons.refusals import NoSuchEmitter
 from backend.search.antenna import antenna_fact
 from backend.search.area import centre_of, corner_of
 from backend.search.errors import MissionInputError
+from backend.search.reported import SAME_CHANNEL_HZ
 from backend.search.state import SearchState, evolve
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.search.together import together
@@ -33,24 +34,25 @@ from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.bearings_file import LATEST_S
 from hardware.direction_finding.recordings import RecordedSweep, Recording, mounted
+from hardware.direction_finding.table_file import some_of
+from hardware.direction_finding.table_tags import frequency_hz
 from hardware.frame import LocalFrame
 from hardware.ports import DirectionFinder
 from hardware.readings import Place, Sweep
-from hardware.reasons.table import PlaceNotStated
+from hardware.reasons.table import OneTagOnly, PlaceNotStated
 
 FAR_M = 50_000.0
 """A sweep taken further from the area belongs to another mission."""
 MOST_SWEEPS = 200
 CLOCK_S = 1e8
 """Times from here on, to 2100, are UTC epoch seconds; others count from somewhere in the recording."""
-OTHER_FREQUENCY = 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class Upload:
     """recording_id: tells whether the same was imported before. place, at_s: as the operator names them, before the
     file's own; at_s UTC epoch seconds of the first sample. offset_deg: of the antenna to the nose. emitter_id
-    None: the first one. pattern: of the antenna that took the sweeps, None: ours did."""
+    None: see emitter_heard. pattern: of the antenna that took the sweeps, None: ours did."""
 
     recording_id: str
     filename: str
@@ -131,6 +133,11 @@ def import_facts(
 ) -> Import:
     """Bearing or rejection of every sweep, and the belief after each bearing. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
+    tags = {tag.casefold(): tag for recorded in recording.sweeps if (tag := recorded.sweep.tag)}
+    if len(tags) > 1 and not _of_one_channel([recorded.sweep for recorded in recording.sweeps]):
+        raise MissionInputError(OneTagOnly(upload.filename, some_of(tags.values())), "tag")
+    heard_hz = [recorded.sweep.frequency_hz or None for recorded in recording.sweeps]
+    upload = replace(upload, emitter_id=emitter_heard(mission, upload.emitter_id, heard_hz))
     emitter, remarks, number = begun(state, upload, len(recording.sweeps))
     pattern = ours if upload.pattern is None else upload.pattern
     mismatch = None if upload.pattern is None else pattern.other_frequency(emitter.frequency_hz)
@@ -177,6 +184,34 @@ def with_beliefs(
     return facts
 
 
+def emitter_heard(mission: MissionSpec, named: str | None, heard_hz: Sequence[float | None]) -> str | None:
+    """Who is named, else the only one on a frequency that the file tells; None where there is one at all. heard_hz: of
+    each sweep or bearing, None: not told. Raises MissionInputError."""
+    emitters = mission.emitters
+    if named is not None or len(emitters) == 1:
+        return named
+    told = [hz for hz in heard_hz if hz is not None]
+    heard = [one.emitter_id for one in emitters if any(same_channel(one, hz) for hz in told)]
+    if len(heard) == 1:
+        return heard[0]
+    if heard or len(told) < len(heard_hz):
+        raise MissionInputError(reasons.WhichEmitter(len(emitters)), "emitter_id")
+    raise MissionInputError(reasons.HeardElsewhere(told[0]), "files")
+
+
+def _of_one_channel(sweeps: Sequence[Sweep]) -> bool:
+    """Whether the tags are no more than what a receiver was tuned to, a little beside one emitter's frequency."""
+    heard = [sweep.frequency_hz for sweep in sweeps]
+    named = [frequency_hz("", sweep.tag or "") or math.inf for sweep in sweeps]
+    as_heard = all(abs(one - hz) <= SAME_CHANNEL_HZ for one, hz in zip(named, heard, strict=True))
+    return as_heard and max(heard) - min(heard) <= SAME_CHANNEL_HZ
+
+
+def same_channel(emitter: EmitterSpec, frequency_hz: float) -> bool:
+    """Whether what was heard at this frequency may be the emitter."""
+    return abs(frequency_hz - emitter.frequency_hz) <= SAME_CHANNEL_HZ
+
+
 def _emitter_of(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:
     """None: the first. Raises MissionInputError."""
     try:
@@ -204,7 +239,7 @@ def _prepared(
     else:
         raise MissionInputError(PlaceNotStated(upload.filename), "lat")
     refuse_far(place, mission)
-    if sweep.frequency_hz > 0 and abs(sweep.frequency_hz / emitter.frequency_hz - 1.0) > OTHER_FREQUENCY:
+    if sweep.frequency_hz > 0 and not same_channel(emitter, sweep.frequency_hz):
         remarks.append(reasons.OtherFrequency(upload.filename, sweep.frequency_hz, emitter.frequency_hz))
     altitude = sweep.altitude_amsl_m if math.isfinite(sweep.altitude_amsl_m) else 0.0
     if altitude == 0.0:

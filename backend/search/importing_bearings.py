@@ -13,8 +13,17 @@ from backend.events import BearingMeasured, ImportSource
 from backend.reasons import search as reasons
 from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
-from backend.search.importing import Import, Upload, begun, import_fact, refuse_far, with_beliefs
-from backend.search.reported import COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ, compass_share_deg
+from backend.search.importing import (
+    Import,
+    Upload,
+    begun,
+    emitter_heard,
+    import_fact,
+    refuse_far,
+    same_channel,
+    with_beliefs,
+)
+from backend.search.reported import COMPASS_SIGMA_DEG, compass_share_deg
 from backend.search.state import SearchState
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.bearing_scatter import bearing_scatter
@@ -29,7 +38,8 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, 
     """Every bearing of the emitter and, where nobody else makes it, the belief after the last (believed): all bearings
     are weighed again at each of them, which takes a processor most of a minute for 150. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
-    upload = replace(upload, emitter_id=_emitter_id(mission, upload))
+    heard_hz = [one.frequency_hz for one in recording.bearings]
+    upload = replace(upload, emitter_id=emitter_heard(mission, upload.emitter_id, heard_hz))
     emitter, remarks, last = begun(state, upload, len(recording.bearings))
     heard = [one for one in recording.bearings if _of(emitter, one)]
     if not heard:
@@ -69,22 +79,8 @@ def _with_sigmas(bearings: Sequence[RecordedBearing], mission: MissionSpec, home
     return [one if one.stated else replace(one, sigma_deg=sigma_deg) for one in bearings]
 
 
-def _emitter_id(mission: MissionSpec, upload: Upload) -> str | None:
-    """Who is named, else the only one on a frequency that the file tells; None where there is one at all."""
-    bearings = upload.recording.bearings
-    if upload.emitter_id is not None or len(mission.emitters) == 1:
-        return upload.emitter_id
-    told = [one for one in bearings if one.frequency_hz is not None]
-    heard = [emitter for emitter in mission.emitters if any(_of(emitter, one) for one in told)]
-    if len(heard) == 1:
-        return heard[0].emitter_id
-    if heard or len(told) < len(bearings):
-        raise MissionInputError(reasons.WhichEmitter(len(mission.emitters)), "emitter_id")
-    return None
-
-
 def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:
-    return one.frequency_hz is None or abs(one.frequency_hz - emitter.frequency_hz) <= SAME_CHANNEL_HZ
+    return one.frequency_hz is None or same_channel(emitter, one.frequency_hz)
 
 
 def _fact(

@@ -20,10 +20,12 @@ from backend.events import BearingMeasured, BeliefUpdated, Event, ImportSource, 
 from backend.ports import JournalUnavailable
 from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.search import (
+    HeardElsewhere,
     ImportRemark,
     OtherFrequency,
     RecordingTooFar,
     RecordingTooLong,
+    WhichEmitter,
 )
 from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, OF_IMPORTS, Import, Upload, import_facts
@@ -35,7 +37,7 @@ from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.recordings import RecordedSweep, Recording
 from hardware.readings import BearingReading, Place, Sweep
 from hardware.reasons.pattern import PatternOfOtherFrequency
-from hardware.reasons.table import CellUnusable, PlaceNotStated
+from hardware.reasons.table import CellUnusable, OneTagOnly, PlaceNotStated
 
 TARGET = (30.0, 60.0)
 REMARK = CellUnusable("turn.csv", 7, 1, "north", "heading")
@@ -97,6 +99,45 @@ def test_a_recording_is_of_the_emitter_that_is_named() -> None:
     with pytest.raises(MissionInputError) as refused:
         imported(upload(recorded(-80.0, 10.0), emitter_id="fox"), mission=mission)
     assert (refused.value.reason, refused.value.field) == (NoSuchEmitter("fox"), "emitter_id")
+
+
+def of(tag: str | None = None, frequency_hz: float = 0.0) -> RecordedSweep:
+    one = recorded(-80.0, 10.0)
+    return replace(one, sweep=replace(one.sweep, tag=tag, frequency_hz=frequency_hz))
+
+
+def test_turns_of_several_tags_are_refused_until_one_is_named() -> None:
+    with pytest.raises(MissionInputError) as refused:
+        imported(upload(of("lynx"), of(None), of("hare"), of("lynx")))
+    assert (refused.value.reason, refused.value.field) == (OneTagOnly("turn.csv", ("hare", "lynx")), "tag")
+    assert len(imported(upload(of("lynx"), of(None), of("Lynx"))).sweeps) == 3
+
+
+def test_turns_named_by_frequencies_of_one_channel_are_of_one_emitter() -> None:
+    tuned = [of("150.1", 150.1e6), of("150.106", 150.106e6)]
+    assert len(imported(upload(*tuned)).sweeps) == 2
+    for others in ([of("150.1", 150.1e6), of("150.2", 150.2e6)], [of("7", 150.1e6), of("8", 150.1e6)]):
+        with pytest.raises(MissionInputError) as refused:
+            imported(upload(*others))
+        assert refused.value.field == "tag"
+
+
+def test_of_several_emitters_the_recordings_frequency_or_whoever_sends_it_says_which() -> None:
+    first, second = spec(TWO_EMITTERS).emitters
+    apart = spec([first, second.model_copy(update={"frequency_hz": first.frequency_hz + 100e3})])
+    near = [of(frequency_hz=first.frequency_hz + 120e3), of(frequency_hz=first.frequency_hz + 110e3)]
+    assert {kept.emitter_id for kept in imported(upload(*near), mission=apart).sweeps} == {"emitter-2"}
+    alike = spec([first, second.model_copy(update={"frequency_hz": first.frequency_hz})])
+    for mission, frequency_hz in ((apart, 0.0), (alike, first.frequency_hz)):
+        with pytest.raises(MissionInputError) as refused:
+            imported(upload(of(frequency_hz=frequency_hz)), mission=mission)
+        assert (refused.value.reason, refused.value.field) == (WhichEmitter(2), "emitter_id")
+    with pytest.raises(MissionInputError) as refused:
+        imported(upload(of(frequency_hz=433e6)), mission=apart)
+    assert refused.value.reason == HeardElsewhere(433e6)
+    named = upload(of(frequency_hz=first.frequency_hz + 100e3), emitter_id="emitter-1")
+    (told,) = [one for one in imported(named, mission=apart).facts if isinstance(one, RecordingImported)]
+    assert OtherFrequency("turn.csv", first.frequency_hz + 100e3, first.frequency_hz) in told.remarks
 
 
 def test_another_antennas_sweeps_are_heard_through_its_own_pattern() -> None:
