@@ -26,7 +26,7 @@ Unit = Literal["decibels", "linear", "unnamed"]
 
 _HEADINGS = ("heading", "yaw", "azimuth", "angle", "bearing", "direction", "kurs", "richtung", "azimut", "winkel")
 _POWERS = ("power", "rssi", "level", "signal_strength", "snr", "leistung", "pegel")
-_DECIBELS = ("_db", "_dbm", "_dbw", "_dbfs")
+_DECIBELS = ("_db", "_dbm", "_dbw", "_dbfs", "_dbµv", "_dbμv", "_dbuv")
 _LINEAR = ("_mw", "_w", "_uw", "_µw", "_nw", "_pw", "_lin", "_linear")
 
 _TIMES = ("at_s", "time_s", "time", "t", "timestamp")

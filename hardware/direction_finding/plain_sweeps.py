@@ -11,10 +11,11 @@ import numpy as np
 from hardware.direction_finding.plain_columns import Columns, columns_of
 from hardware.direction_finding.plain_turns import ELSEWHERE_M, HeardAt, place_of, turns_in
 from hardware.direction_finding.plain_units import decibels_doubted, refuse_radians
-from hardware.direction_finding.table_file import RecordingError, Row, Table, some_of
+from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError, Row, Table, some_of
 from hardware.direction_finding.table_places import Places
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import (
+    FrequenciesUnread,
     NothingUsable,
     OtherTagsLeftOut,
     PlacesApart,
@@ -67,7 +68,19 @@ def _heard(table: Table, columns: Columns, rows: Sequence[Row]) -> tuple[list[He
         HeardAt(row, _value(row, columns.time, float(k)), heading % 360.0, power, _place(row, columns.places))
         for k, (row, heading, power) in enumerate(good)
     ]
-    return heard, remarks if doubt is None else [doubt, *remarks]
+    doubts = [one for one in (doubt, _frequencies_unread(file, columns, heard)) if one is not None]
+    return heard, [*doubts, *remarks]
+
+
+def _frequencies_unread(file: str, columns: Columns, heard: Sequence[HeardAt]) -> FrequenciesUnread | None:
+    """None where one can be read, or there is none."""
+    column = columns.frequency
+    if column is None:
+        return None
+    told = [one.row for one in heard if column < len(one.row.cells) and one.row.cells[column]]
+    if not told or any(columns.frequency_of(row) is not None for row in told):
+        return None
+    return FrequenciesUnread(file, told[0].line, column + 1, told[0].cells[column][:LONGEST_CELL])
 
 
 def _nothing(

@@ -26,7 +26,9 @@ from planner.reason import ReasonedError
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
 _MINUTES_COMMA = re.compile(r"\d{1,3}[°º: ] ?(?:\d{1,2}['′’: ] ?)?\d{1,2},\d+['′’″”\"]{0,2}")
 """The same in minutes or seconds of a place."""
-_BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\]]+")
+_TIME_COMMA = re.compile(r"(?:[\d.\-/]{6,10}[T ])?\d{1,2}:\d\d:\d\d,\d{1,9}(?: ?Z|[+-]\d\d:?\d\d)?")
+"""The same in seconds of a time, with or without a date."""
+_BETWEEN_WORDS = re.compile(r"[\s_\-/()\[\].]+")
 _WHOLE = re.compile(r"[+-]?\d+")
 _DEGREES = re.compile(r"(?<=[\d.])\s*(?:Â?[°º]|deg|degrees|Grad)$", re.IGNORECASE)
 _DECIBELS = re.compile(r"(?<=[\d.])\s*dB(?:m|W|FS|i|d|[µu]V)?$", re.IGNORECASE)
@@ -223,7 +225,7 @@ def cells_of(line: str) -> tuple[str, ...]:
 def _is_decimal(cell: str) -> bool:
     """Whether it has a decimal comma."""
     plain = _bare(cell, _DEGREES, _DECIBELS)
-    return (_DECIMAL_COMMA.fullmatch(plain) or _MINUTES_COMMA.fullmatch(cell)) is not None
+    return bool(_DECIMAL_COMMA.fullmatch(plain) or _MINUTES_COMMA.fullmatch(cell) or _TIME_COMMA.fullmatch(cell))
 
 
 def _is_note(cell: str) -> bool:
@@ -258,7 +260,8 @@ def listed(path: Path | str, remarks: Sequence[RecordingReason]) -> tuple[Record
 
 
 def plain_name(name: str) -> str:
-    """A header cell in lower case, its words and its unit joined by underscores: "Heading [°]" is heading_deg."""
+    """A header cell in lower case, its words and its unit joined by underscores: "Heading [°]" and R's
+    "Heading..deg." are heading_deg."""
     words = _BETWEEN_WORDS.sub("_", name.lower().replace("°", "_deg")).strip("_")
     return re.sub(r"_degrees?$", "_deg", words)
 

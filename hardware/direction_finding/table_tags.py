@@ -10,8 +10,9 @@ from collections.abc import Collection, Sequence
 from hardware.direction_finding.table_file import Row, column_of, number_of, plain_name
 
 TAGS = ("tag", "tag_id", "tagid")
-OTHERS = ("transmitter", "transmitter_id", "collar", "collar_id", "animal", "animal_id")
-FREQUENCIES = tuple(f"{name}{unit}" for name in ("frequency", "freq") for unit in ("", "_hz", "_khz", "_mhz"))
+OTHERS = tuple(f"{name}{number}" for name in ("transmitter", "collar", "animal") for number in ("", "_id", "id"))
+_FREQUENCIES = ("frequency", "freq", "frequenz", "fréquence", "center_frequency", "core:frequency")
+FREQUENCIES = tuple(f"{name}{unit}" for name in _FREQUENCIES for unit in ("", "_hz", "_khz", "_mhz", "_ghz"))
 _UNIT = re.compile(r" ?([kMG]?)Hz$", re.IGNORECASE)
 _HZ = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 _MOST_MHZ = 30e3

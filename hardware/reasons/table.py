@@ -223,6 +223,22 @@ class DecibelsAssumed:
 
 
 @dataclass(frozen=True, slots=True)
+class FrequenciesUnread:
+    """line, column: from 1, of the first one. cell: as it stands there."""
+
+    file: str
+    line: int
+    column: int
+    cell: str
+    code: Literal["frequencies_unread"] = "frequencies_unread"
+
+    english: ClassVar[Words] = Words(
+        'No frequency in column {column} of {file} can be read, as "{cell}" in line {line}.',
+        "Write each as one number, and the unit behind it or in the column's name.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class PlacesApart:
     """line: of the sweep's first row. apart_m: of its row that is farthest from the place that it counts from."""
 
@@ -245,6 +261,7 @@ TableRemark = (
     | TagNotHeard
     | OtherTagsLeftOut
     | DecibelsAssumed
+    | FrequenciesUnread
     | PlacesApart
 )
 """What is left out of a file, or assumed in it."""

@@ -357,6 +357,10 @@ export const reasonsEn: ReasonTable = {
     "The power in column {column} of {file} ({least:2} to {most:2}) is taken for decibels.",
     "Name the column power_db if it is.",
   ],
+  frequencies_unread: [
+    'No frequency in column {column} of {file} can be read, as "{cell}" in line {line}.',
+    "Write each as one number, and the unit behind it or in the column's name.",
+  ],
   places_apart: [
     "The sweep from line {line} of {file} was taken at places {apart_m} apart.",
     "Number several turns in a column named sweep.",

@@ -11,7 +11,7 @@ from refusals import refusing
 from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.readings import Place
-from hardware.reasons.table import ColumnsUnknown, RowLeftOut, TooManyCells
+from hardware.reasons.table import ColumnsUnknown, FrequenciesUnread, RowLeftOut, TooManyCells
 
 ROWS = [(float(heading) + 0.25, -60.5 - heading / 20) for heading in range(0, 360, 10)]
 EXPECTED = ("heading_deg", "power_db")
@@ -137,3 +137,31 @@ def test_a_first_column_like_commands_under_a_header_is_none(tmp_path: Path, fir
     lines = (f"{first},7.2,{heading},{power}" for heading, power in ROWS)
     path = file_of(tmp_path, "lat,lon,heading_deg,power_db", *lines)
     assert read_recording(path).sweeps[0].sweep.position.lat == first
+
+
+@pytest.mark.parametrize(
+    ("name", "cell"),
+    [
+        ("Frequenz (MHz)", "150,1"),
+        ("Frequency..MHz.", "150.1"),
+        ("Fréquence (MHz)", "150.1"),
+        ("Center Frequency (Hz)", "150100000"),
+        ("core:frequency", "150100000"),
+        ("freq_GHz", "0.1501"),
+    ],
+)
+def test_a_frequency_is_read_by_the_names_that_others_give_it(name: str, cell: str, tmp_path: Path) -> None:
+    path = tmp_path / "turn.csv"
+    rows = "".join(f"{heading};{-70 + heading % 7};{cell}\n" for heading in range(0, 360, 20))
+    path.write_text(f"Heading..deg.;Pegel (dBµV);{name}\n{rows}")
+    (recorded,) = read_recording(path).sweeps
+    assert recorded.sweep.frequency_hz == pytest.approx(150.1e6)
+    assert len(recorded.sweep.heading_deg) == 18
+
+
+def test_frequencies_of_which_none_can_be_read_are_remarked(tmp_path: Path) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_text(
+        "heading_deg,power_db,frequency\n" + "".join(f"{k},{-70 + k % 7},150.100 VHF\n" for k in range(0, 360, 20))
+    )
+    assert FrequenciesUnread(str(path), 2, 3, "150.100 VHF") in read_recording(path).remarks

@@ -106,3 +106,13 @@ def test_tabs_around_a_row_are_no_columns(tmp_path: Path, row: str) -> None:
     path = tmp_path / "turn.csv"
     path.write_text(f"{row}\n")
     assert [cell for cell in read_table(path).rows[0].cells if cell] == ["10", "40"]
+
+
+@pytest.mark.parametrize(
+    "time", ["2024-05-01 12:00:07,123", "01.05.2024 12:00:07,5", "12:00:07,25", "2024-05-01T12:00:07,1Z"]
+)
+def test_a_time_may_have_a_decimal_comma_between_semicolons(time: str, tmp_path: Path) -> None:
+    path = tmp_path / "turn.csv"
+    path.write_text(f"Zeit;Richtung;Pegel\n{time};12,5;-70,5\n")
+    (recorded,) = read_recording(path).sweeps
+    assert (recorded.sweep.heading_deg.tolist(), recorded.sweep.power_db.tolist()) == ([12.5], [-70.5])

@@ -48,6 +48,10 @@ export const recording = {
     "Die Leistung in Spalte {column} von {file} ({least:2} bis {most:2}) wird als Dezibel genommen.",
     "Stimmt das, die Spalte power_db nennen.",
   ],
+  frequencies_unread: [
+    'In Spalte {column} von {file} ist keine Frequenz lesbar, wie "{cell}" in Zeile {line}.',
+    "Jede als eine Zahl schreiben, die Einheit dahinter oder im Namen der Spalte.",
+  ],
   places_apart: [
     "Die Drehung ab Zeile {line} von {file} entstand an Orten, die {apart_m} auseinanderliegen.",
     "Mehrere Drehungen in einer Spalte namens sweep nummerieren.",
