@@ -46,8 +46,8 @@ FEWEST_BEARINGS = 3
 """Fewer may well all lie within six degrees of north."""
 FEWEST_READINGS = 8
 HOVERS_M = 10.0
-"""Of an antenna's turn: so many readings within so much of the first. Nobody takes as many bearings there, and in all
-directions; who walks or rows around an animal does so from further away."""
+"""Of an antenna's turn: at least this many readings, all this near to the first. A list of bearings never has so many
+from one spot in all directions; bearings from a circle around an animal are farther apart."""
 EXPECTED = ("lat", "lon", "bearing_deg")
 EXPECTED_UTM = ("easting", "northing", "utm_zone", "bearing_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
