@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -23,7 +23,7 @@ from hardware.direction_finding.table_places import (
     Places,
     place_columns,
 )
-from hardware.direction_finding.table_tags import tags_in
+from hardware.direction_finding.table_tags import Naming, as_written, tags_in
 from hardware.direction_finding.uavrt import is_uavrt
 from hardware.frame import LocalFrame
 from hardware.readings import Place
@@ -85,17 +85,15 @@ class RecordedBearings:
 @dataclass(frozen=True, slots=True)
 class _Columns:
     """Indices from 0. width: how many there are, None: as many as a row likes. noted: the last one is none of these,
-    and may hold anything. tags: by what cells of the tag's column say; empty: as they say. in_degrees: the bearing's
-    name says so, or the device that writes such files."""
+    and may hold anything. in_degrees: the bearing's name says so, or the device that writes such files."""
 
     places: Places
     bearing: int
     sigma: int | None
-    tag: int | None
+    tags: Naming | None = None
     at: int | None = None
     width: int | None = None
     noted: bool = False
-    tags: Mapping[str, str] = field(default_factory=dict[str, str])
     in_degrees: bool = False
 
 
@@ -206,12 +204,13 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
         header = next(filter(_names_all, heads), heads[0])
         return _named(table, header), table.below(header)
     if len(first.cells) == 10:
-        return _Columns(PlaceColumns(4, 5), bearing=2, sigma=None, tag=0, at=9, in_degrees=True), table.rows
+        tags = as_written(0, table.rows)
+        return _Columns(PlaceColumns(4, 5), bearing=2, sigma=None, tags=tags, at=9, in_degrees=True), table.rows
     if len(first.cells) in (3, 4):
         unread = first.number(0) is None or (first.cells[1] and first.number(1) is None)
         if unread or _unlike_sigmas(table) or _counts_rows(table):
             raise table.columns_unknown(first, *EXPECTED)
-        return _Columns(PlaceColumns(0, 1), bearing=2, sigma=3, tag=None), table.rows
+        return _Columns(PlaceColumns(0, 1), bearing=2, sigma=3), table.rows
     raise table.columns_unknown(first, *EXPECTED)
 
 
@@ -223,15 +222,14 @@ def _named(table: Table, header: Row) -> _Columns:
         in_utm = column_of(names, *EASTING) is not None
         raise table.columns_unknown(header, *(EXPECTED_UTM if in_utm else EXPECTED))
     last = max(k for k, name in enumerate(names) if name)
-    tag, tags = tags_in(names, [row for row in rows if row.number(bearing) is not None])
+    tags = tags_in(names, [row for row in rows if row.number(bearing) is not None])
     return _Columns(
         places,
         bearing,
         sigma,
-        tag,
+        tags,
         width=last + 1,
-        noted=last not in (*places.columns, bearing, sigma, tag),
-        tags=tags,
+        noted=last not in (*places.columns, bearing, sigma, None if tags is None else tags.column),
         in_degrees=plain_name(names[bearing]).endswith("_deg"),
     )
 
@@ -269,8 +267,7 @@ def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float
         if stated is None or not 0.0 < stated <= 180.0:
             return table.cell_unusable(row, columns.sigma, "sigma")
         sigma, given = stated, True
-    tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else ""
-    tag = columns.tags.get(tag, tag)
+    tag = "" if columns.tags is None else columns.tags.of(row)
     at_s = None if columns.at is None else row.number(columns.at)
     at_s = at_s if at_s is not None and EARLIEST_S < at_s < LATEST_S else None
     return RecordedBearing(row.line, place, bearing % 360.0, sigma, tag or None, given, at_s)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -19,7 +18,7 @@ from hardware.direction_finding.table_file import (
     plain_name,
 )
 from hardware.direction_finding.table_places import Places, place_columns
-from hardware.direction_finding.table_tags import FREQUENCIES, OTHERS, TAGS, frequency_hz, tags_in
+from hardware.direction_finding.table_tags import FREQUENCIES, frequency_hz
 from hardware.reasons.table import FileUnusable, TooManyCells
 
 Unit = Literal["decibels", "linear", "unnamed"]
@@ -46,7 +45,7 @@ ROUND_DEG = 240.0
 @dataclass(frozen=True, slots=True)
 class Columns:
     """Indices from 0, None: there is none. width: how many columns there are, None: as many as a row likes. radians:
-    the heading's name says so. unit: what the power's name says. tags: by what cells of the tag's column say."""
+    the heading's name says so. unit: what the power's name says. names: of all columns, as the header has them."""
 
     heading: int
     power: int
@@ -57,14 +56,8 @@ class Columns:
     places: Places | None = None
     frequency: int | None = None
     frequency_name: str = ""
-    tag: int | None = None
-    tags: Mapping[str, str] = field(default_factory=dict[str, str])
     turns: tuple[int, ...] = ()
-
-    def tag_of(self, row: Row) -> str:
-        """Empty where the row names none."""
-        cell = "" if self.tag is None or self.tag >= len(row.cells) else row.cells[self.tag]
-        return self.tags.get(cell, cell)
+    names: tuple[str, ...] = ()
 
     def frequency_of(self, row: Row) -> float | None:
         """In hertz; None where the row tells none."""
@@ -118,7 +111,6 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
     if heading is None or power is None or [*map(plain_name, names)].count(plain_name(names[power])) > 1:
         raise table.columns_unknown(header, *EXPECTED)
     frequency, turns = column_of(names, *FREQUENCIES), [column_of(names, name) for name in TURNS]
-    tag, tags = _tags(names, rows, heading, power)
     return Columns(
         heading=heading,
         power=power,
@@ -129,31 +121,9 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
         places=place_columns(names, rows),
         frequency=frequency,
         frequency_name="" if frequency is None else names[frequency],
-        tag=tag,
-        tags=tags,
         turns=tuple(column for column in turns if column is not None),
+        names=names,
     )
-
-
-def _tags(
-    names: tuple[str, ...], rows: Sequence[Row], heading: int, power: int
-) -> tuple[int | None, Mapping[str, str]]:
-    """A column of tags; without one another, or frequencies, where two of what they name went round: a receiver may
-    write the frequency of what it heard loudest just then."""
-    named = column_of(names, *TAGS)
-    if named is not None or column_of(names, *OTHERS, *FREQUENCIES) is None:
-        return named, {}
-    rows = [row for row in rows if row.decibels(power) is not None]
-    column, tags = tags_in(names, rows)
-    if column is None:
-        return None, {}
-    headings: dict[str, list[float]] = {}
-    for row in rows:
-        value, name = row.number(heading), tags.get(row.cells[column] if column < len(row.cells) else "")
-        if name is not None and value is not None and math.isfinite(value):
-            headings.setdefault(name, []).append(value)
-    round_of = [turned_deg(of_one) >= ROUND_DEG for of_one in headings.values()]
-    return (column, tags) if sum(round_of) > 1 else (None, {})
 
 
 def turned_deg(headings: Sequence[float]) -> float:

@@ -8,8 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hardware.direction_finding.heard_at import HeardAt
 from hardware.direction_finding.plain_columns import Columns, columns_of
-from hardware.direction_finding.plain_turns import ELSEWHERE_M, HeardAt, place_of, turns_in
+from hardware.direction_finding.plain_tags import Tags, turn_of
+from hardware.direction_finding.plain_turns import ELSEWHERE_M, place_of, turns_in
 from hardware.direction_finding.plain_units import decibels_doubted, refuse_radians
 from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError, Row, Table, some_of
 from hardware.direction_finding.table_places import Places
@@ -38,8 +40,8 @@ def read_plain(table: Table, tag: str | None) -> tuple[list[tuple[Sweep, bool]],
     columns, rows = columns_of(table)
     heard, remarks = _heard(table, columns, rows)
     file = str(table.path)
-    turns = turns_in(heard, columns, rows)
-    sweeps = [sweep for turn in turns if (sweep := _sweep(file, turn, columns, tag, remarks)) is not None]
+    turns, tags = turns_in(heard, columns, rows)
+    sweeps = [sweep for turn in turns if (sweep := _sweep(file, turn, columns, tags, tag, remarks)) is not None]
     if not sweeps:
         raise RecordingError(next(remark for remark in remarks if isinstance(remark, TagNotHeard)))
     return sweeps, remarks
@@ -93,21 +95,22 @@ def _nothing(
 
 
 def _sweep(
-    file: str, turn: list[HeardAt], columns: Columns, tag: str | None, remarks: list[TableRemark]
+    file: str, turn: list[HeardAt], columns: Columns, tags: Tags | None, tag: str | None, remarks: list[TableRemark]
 ) -> tuple[Sweep, bool] | None:
     """None, with a remark, where the tag was not heard."""
     line, wanted = turn[0].row.line, tag
-    tags = [columns.tag_of(one.row) for one in turn]
-    named = Counter(name for name in tags if name)
-    if named:
+    named = Counter(name for one in turn if (name := "" if tags is None else tags[one.row.line]))
+    if tags is not None and named:
         wanted = named.most_common(1)[0][0] if tag is None else tag
         if wanted not in named:
             remarks.append(TagNotHeard(file, line, wanted, some_of(named)))
             return None
-        if tag is None and len(set(tags)) > 1:
-            others = some_of(name or "-" for name in set(tags) - {wanted})
-            remarks.append(OtherTagsLeftOut(file, line, wanted, len(turn) - named[wanted], others))
-        turn = [one for one, name in zip(turn, tags, strict=True) if name == wanted]
+        own = turn_of(wanted, turn, tags)
+        if tag is None and len(own) < len(turn):
+            others = {tags[one.row.line] for one in turn} - {tags[one.row.line] for one in own}
+            left = some_of(name or "-" for name in others)
+            remarks.append(OtherTagsLeftOut(file, line, wanted, len(turn) - len(own), left))
+        turn = own
     found = place_of(turn)
     if found is not None and found[1] > ELSEWHERE_M:
         remarks.append(PlacesApart(file, line, found[1]))

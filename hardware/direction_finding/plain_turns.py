@@ -6,12 +6,13 @@ from __future__ import annotations
 import math
 from bisect import bisect
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from hardware.direction_finding.heard_at import HeardAt
 from hardware.direction_finding.plain_columns import HALF_TURN_DEG, HEADING, ROUND_DEG, Columns, turned_deg
+from hardware.direction_finding.plain_tags import Tags, tags_of_turns
 from hardware.direction_finding.table_file import Row, column_of
 from hardware.frame import LocalFrame, middle_of
 from hardware.readings import Place
@@ -22,27 +23,20 @@ MOST_PLACES = 200
 """Of a table with more the rows were taken on the way."""
 
 
-@dataclass(frozen=True, slots=True)
-class HeardAt:
-    """One usable row. heading_deg: [0, 360). at_s: as the table tells, else its number in the file. place None: it does
-    not tell."""
-
-    row: Row
-    at_s: float
-    heading_deg: float
-    power_db: float
-    place: Place | None
-
-
-def turns_in(heard: Sequence[HeardAt], columns: Columns, rows: Sequence[Row]) -> list[list[HeardAt]]:
-    """The usable rows of each turn, in the order in which turns begin; at least one turn of at least one row."""
+def turns_in(
+    heard: Sequence[HeardAt], columns: Columns, rows: Sequence[Row]
+) -> tuple[list[list[HeardAt]], Tags | None]:
+    """(the usable rows of each turn, in the order in which turns begin; whose they are). At least one turn of at least
+    one row."""
     numbering = [column for column in columns.turns if _numbers_turns(heard, column)]
     if not numbering:
-        return _by_place(heard) or _by_blocks(heard, rows, columns) or [list(heard)]
-    turns: dict[tuple[str, ...], list[HeardAt]] = {}
+        turns = _by_place(heard)
+        return _by_blocks(heard, rows, columns) if turns is None else (turns, tags_of_turns(columns.names, turns))
+    numbered: dict[tuple[str, ...], list[HeardAt]] = {}
     for one in heard:
-        turns.setdefault(tuple(_cell(one, column) for column in numbering), []).append(one)
-    return list(turns.values())
+        numbered.setdefault(tuple(_cell(one, column) for column in numbering), []).append(one)
+    turns = list(numbered.values())
+    return turns, tags_of_turns(columns.names, turns)
 
 
 def _numbers_turns(heard: Sequence[HeardAt], column: int) -> bool:
@@ -76,22 +70,35 @@ def _by_place(heard: Sequence[HeardAt]) -> list[list[HeardAt]] | None:
     return turns if len(turns) > 1 and all(_turned_deg(turn) >= HALF_TURN_DEG for turn in turns) else None
 
 
-def _by_blocks(heard: Sequence[HeardAt], rows: Sequence[Row], columns: Columns) -> list[list[HeardAt]] | None:
-    """None unless it went round in several blocks of lines; blocks of one tag each are not several turns,
-    where a column of tags says so."""
+def _by_blocks(
+    heard: Sequence[HeardAt], rows: Sequence[Row], columns: Columns
+) -> tuple[list[list[HeardAt]], Tags | None]:
+    """One turn unless it went round in several blocks of lines. Blocks of one tag each are those of each tag."""
     begins = [
         after.line for before, after in pairwise(rows) if after.line - before.line > 1 or _is_header(after, columns)
     ]
-    turns: list[list[HeardAt]] = [[] for _ in range(len(begins) + 1)]
+    blocks: list[list[HeardAt]] = [[] for _ in range(len(begins) + 1)]
     for one in heard:
-        turns[bisect(begins, one.row.line)].append(one)
-    if sum(len(turn) > 1 and _turned_deg(turn) >= ROUND_DEG for turn in turns) < 2:
-        return None
-    turns = [turn for turn in turns if turn]
-    if columns.tags:
-        return turns
-    tags = [{columns.tag_of(one.row) for one in turn} for turn in turns]
-    return None if any(len(named) == 1 and named != tags[0] for named in tags) else turns
+        blocks[bisect(begins, one.row.line)].append(one)
+    blocks = [block for block in blocks if block]
+    tags = tags_of_turns(columns.names, blocks if _went_round(blocks) > 1 else [heard])
+    names = [set[str]() if tags is None else {tags[one.row.line] for one in block} for block in blocks]
+    if any(len(named) != 1 for named in names):
+        return blocks if _went_round(blocks) > 1 else [list(heard)], tags
+    of_tag: dict[str, list[list[HeardAt]]] = {}
+    for (name,), block in zip(names, blocks, strict=True):
+        of_tag.setdefault(name, []).append(block)
+    turns = [turn for of_one in of_tag.values() for turn in _of_one_tag(of_one)]
+    return sorted(turns, key=lambda turn: turn[0].row.line), tags
+
+
+def _of_one_tag(blocks: list[list[HeardAt]]) -> list[list[HeardAt]]:
+    return blocks if _went_round(blocks) > 1 else [[one for block in blocks for one in block]]
+
+
+def _went_round(turns: Sequence[Sequence[HeardAt]]) -> int:
+    """How many did."""
+    return sum(len(turn) > 1 and _turned_deg(turn) >= ROUND_DEG for turn in turns)
 
 
 def _is_header(row: Row, columns: Columns) -> bool:

@@ -184,6 +184,11 @@ def test_biologists_files_in_utm_hold_the_bearings_of_each_frequency(tmp_path: P
         ("animal,frequency", ("fox,150.1", "fox,150.2", "badger,150.3"), ("150.1", "150.2", "150.3")),
         ("frequency", ("150.123 MHz", "150.223MHz", "150.123"), ("150.123", "150.223", "150.123")),
         ("frequency_mhz", ("433.100", "433.105", "433.110"), ("433.1", "433.105", "433.11")),
+        ("frequency_mhz", ("868.95", "868.95625", "868.95"), ("868.95", "868.95625", "868.95")),
+        ("frequency_hz", ("150100000", "150101000", "150102000"), (None,) * 3),
+        ("tag,frequency", ("999,150.12", "999,150.34", "999,150.12"), ("150.12", "150.34", "150.12")),
+        ("tag,frequency", ("999,150.12", "999,150.12", "999,150.12"), ("999",) * 3),
+        ("animal", ("fox", "NA", "-"), ("fox", None, None)),
     ],
 )
 def test_tags_are_named_by_the_column_that_tells_several(

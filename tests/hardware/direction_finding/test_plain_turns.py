@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hardware.direction_finding.recordings import Recording, read_recording
-from hardware.reasons.table import CellUnusable, OtherTagsLeftOut, PlacesApart
+from hardware.reasons.table import CellUnusable, PlacesApart
 
 TURN = range(0, 360, 10)
 
@@ -111,8 +111,13 @@ def test_a_turn_over_the_dateline_was_made_there(tmp_path: Path) -> None:
     assert abs(recorded.sweep.position.lon) > 179.99
 
 
-def test_a_block_for_each_tag_is_of_the_tag_heard_most(tmp_path: Path) -> None:
-    rows = [*turn("B", 100), "", *turn("A", 250), "A,0,-90"]
-    recording = read(tmp_path, "tag,heading_deg,power_db", rows)
-    assert [(one.sweep.tag, one.sweep.power_db.size) for one in recording.sweeps] == [("A", 37)]
-    assert recording.remarks == (OtherTagsLeftOut(str(tmp_path / "turn.csv"), 2, "A", 36, ("B",)),)
+@pytest.mark.parametrize("name", ["tag", "collar", "frequency"])
+def test_blocks_of_one_tag_each_are_turns_of_that_tag(tmp_path: Path, name: str) -> None:
+    halves = (range(0, 180, 10), range(180, 360, 10))
+    rows = [*turn("151", 100), "", *turn("150", 250), "", *turn("151", 250), "", "150,0,-90"]
+    rows += [line for half in halves for line in ("", *turn("152", 40, half))]
+    recording = read(tmp_path, f"{name},heading_deg,power_db", rows)
+    assert [(one.sweep.tag, one.sweep.power_db.size) for one in recording.sweeps] == [
+        ("151", 36), ("150", 37), ("151", 36), ("152", 36),
+    ]  # fmt: skip
+    assert recording.remarks == ()
