@@ -9,6 +9,7 @@ from backend.search.reported import ReportedBearing
 from hardware.direction_finding.bearings_file import EARLIEST_S, RecordedBearing, bearings_in, holds_bearings
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError, Row, Table, read_table, some_of
+from hardware.direction_finding.table_tags import meant
 from hardware.reasons.table import CellUnusable, NothingUsable, OneTagOnly
 
 EPOCH_MS = 1e3 * EARLIEST_S
@@ -24,9 +25,10 @@ def read_bearing_file(path: Path, tag: str | None) -> Recording | None:
         return None
     found = bearings_in(table)
     tags = {one.tag for one in found.bearings if one.tag is not None}
-    if (tag is not None and tags and tag not in tags) or (tag is None and len(tags) > 1):
+    wanted = None if tag is None or not tags else meant(tag, tags)
+    if wanted == "" or (tag is None and len(tags) > 1):
         raise RecordingError(OneTagOnly(str(path), some_of(tags)))
-    chosen = tuple(one for one in found.bearings if tag is None or not tags or one.tag == tag)
+    chosen = tuple(one for one in found.bearings if wanted is None or one.tag == wanted)
     return Recording((), found.remarks, chosen)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from hardware.direction_finding.heard_at import HeardAt
 from hardware.direction_finding.plain_columns import Columns, columns_of
-from hardware.direction_finding.plain_tags import Tags, turn_of
+from hardware.direction_finding.plain_tags import Tags, as_asked, turn_of
 from hardware.direction_finding.plain_turns import ELSEWHERE_M, place_of, turns_in
 from hardware.direction_finding.plain_units import decibels_doubted, refuse_radians
 from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError, Row, Table, some_of
@@ -41,9 +41,12 @@ def read_plain(table: Table, tag: str | None) -> tuple[list[tuple[Sweep, bool]],
     heard, remarks = _heard(table, columns, rows)
     file = str(table.path)
     turns, tags = turns_in(heard, columns, rows)
+    if tag is not None:
+        tags, tag = as_asked(tag, columns.names, turns, tags)
+    named = set[str]() if tags is None else {*tags.values()} - {""}
+    if tag is not None and named and tag not in named:
+        raise RecordingError(TagNotHeard(file, heard[0].row.line, tag, some_of(named)))
     sweeps = [sweep for turn in turns if (sweep := _sweep(file, turn, columns, tags, tag, remarks)) is not None]
-    if not sweeps:
-        raise RecordingError(next(remark for remark in remarks if isinstance(remark, TagNotHeard)))
     return sweeps, remarks
 
 
@@ -100,11 +103,11 @@ def _sweep(
     """None, with a remark, where the tag was not heard."""
     line, wanted = turn[0].row.line, tag
     named = Counter(name for one in turn if (name := "" if tags is None else tags[one.row.line]))
+    if tags is not None and tag is not None and tag not in named:
+        remarks.append(TagNotHeard(file, line, tag, some_of(named or {*tags.values()} - {""})))
+        return None
     if tags is not None and named:
         wanted = named.most_common(1)[0][0] if tag is None else tag
-        if wanted not in named:
-            remarks.append(TagNotHeard(file, line, wanted, some_of(named)))
-            return None
         own = turn_of(wanted, turn, tags)
         if tag is None and len(own) < len(turn):
             others = {tags[one.row.line] for one in turn} - {tags[one.row.line] for one in own}

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from hardware.direction_finding.heard_at import HeardAt
 from hardware.direction_finding.plain_columns import ROUND_DEG, turned_deg
-from hardware.direction_finding.table_file import column_of
-from hardware.direction_finding.table_tags import TAGS, Naming, namings
+from hardware.direction_finding.table_tags import Naming, meant, namings
 
 Tags = Mapping[int, str]
 """By the line of a reading; empty: none is named."""
@@ -20,39 +20,91 @@ FEWEST_HEADINGS = 8
 """With fewer nobody can say which headings were left out."""
 HOPS_FROM_HZ = 300e6
 """Tags below stay on their frequency; transmitters above may change it from pulse to pulse."""
-_NAMED = 0.25
-"""Of the rows have a name where a column says whose they are: a note stands in fewer."""
+_CHANNELS_APART_HZ = 10e3
+"""A strong tag is heard, and a receiver tuned, on those nearer to its own."""
+_FEWEST_TOLD = 3
+"""Rows: a name that is told less often may be a misread one, or a note."""
+_NAMED = 0.2
+"""Of the rows have such a name where a column says whose they are."""
 _STEPS = 1.5
 """As wide as a tag's usual one from heading to heading: in a wider one it was not read."""
 
 
 def tags_of_turns(names: tuple[str, ...], turns: Sequence[Sequence[HeardAt]]) -> Tags | None:
-    """By the first column that names several tags, else one that names the same tag everywhere, else frequencies that
-    are several tags', else one that names a single tag somewhere; None: by none. names: of the columns."""
-    rows = [one.row for turn in turns for one in turn]
-    found = namings(names, rows)
+    """By the first column that names several tags, else one of tags that names the same one everywhere, else
+    frequencies that are several tags', else the first that names a single tag; None: by none. names: of the columns."""
+    found = namings(names, [one.row for turn in turns for one in turn])
     named = [one for one in found if not one.frequencies]
     frequencies = [one for one in found if one.frequencies and one.several > 1]
     for one in named:
-        rows_named = sum(one.of(row) != "" for row in rows)
-        if one.several > 1 and rows_named >= max(2 * one.several, _NAMED * len(rows)):
-            return _coded(one, frequencies, turns)
+        if one.several > 1 and (tags := _filled_down(one, turns) or _told(one, turns)) is not None:
+            return _coded(tags, frequencies, turns)
     for one in named:
-        if one.column == column_of(names, *TAGS) and one.complete and one.several == 1 and not one.of_every_tag:
-            return _coded(one, frequencies, turns)
+        if one.of_tags and one.complete and one.several == 1 and not one.of_every_tag:
+            return _coded(_tags(one, turns), frequencies, turns)
     for one in frequencies:
-        if _are_several(one, turns):
-            return _tags(one, turns)
-    return next((_tags(one, turns) for one in named if one.several == 1), None)
+        tags = _filled_down(one, turns)
+        if tags is not None or _are_several(one, turns):
+            return tags or _tags(one, turns)
+    return next((_tags(one, turns) for one in named if one.several == 1 and not _is_note(one, turns)), None)
+
+
+def as_asked(
+    tag: str, names: tuple[str, ...], turns: Sequence[Sequence[HeardAt]], tags: Tags | None
+) -> tuple[Tags | None, str]:
+    """Whose readings they are where that tag is asked for, by another column if that one names it; and its name."""
+    name = "" if tags is None else meant(tag, {*tags.values()} - {""})
+    if name:
+        return tags, name
+    for one in namings(names, [one.row for turn in turns for one in turn]):
+        name = meant(tag, {*one.names.values()})
+        if name and (tags is not None or not one.frequencies):
+            return _tags(one, turns), name
+    return tags, tag
 
 
 def turn_of(tag: str, turn: Sequence[HeardAt], tags: Tags) -> list[HeardAt]:
     """Its readings, and those that name none where it would else be missing: whatever is heard there is no more."""
     parted = _parted(turn, tags)
-    own, unnamed = parted[tag], parted.get("", [])
-    if not unnamed or not (_are_its_own(own, unnamed) if len(own) >= FEWEST_HEADINGS else len(parted) == 2):
+    own, unnamed = parted.get(tag, []), parted.get("", [])
+    alone = len(parted) == 2
+    if not unnamed or not (
+        (alone and len(own) == 1) or ((alone or len(own) >= FEWEST_HEADINGS) and _are_its_own(own, unnamed))
+    ):
         return own
     return [one for one in turn if tags[one.row.line] in ("", tag)]
+
+
+def _told(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str] | None:
+    """None where too few rows have a name that is told often."""
+    tags = _tags(naming, turns)
+    told = Counter(tags.values())
+    often = sum(count for name, count in told.items() if name and count >= _FEWEST_TOLD)
+    return tags if often >= _NAMED * len(tags) else None
+
+
+def _is_note(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> bool:
+    """Whether it names something in few rows only, and not in a turn's first."""
+    told = sum(naming.of(one.row) != "" for turn in turns for one in turn)
+    return told < _FEWEST_TOLD and not any(naming.of(turn[0].row) for turn in turns)
+
+
+def _filled_down(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str] | None:
+    """Each name for the rows below it, too, as in cells that were merged; None where a name has other rows as well, or
+    the turn is parted where nothing went round."""
+    if naming.complete:
+        return None
+    tags: dict[int, str] = {}
+    for turn in turns:
+        begins = [k for k, one in enumerate(turn) if naming.of(one.row)]
+        runs = [turn[begin:end] for begin, end in pairwise([*begins, len(turn)])]
+        named = [naming.of(run[0].row) for run in runs]
+        if begins[:1] != [0] or len({*named}) < len(named):
+            return None
+        if len(runs) > 1 and not all(turned_deg([one.heading_deg for one in run]) >= ROUND_DEG for run in runs):
+            return None
+        tags |= {one.row.line: name for name, run in zip(named, runs, strict=True) for one in run}
+    return tags
 
 
 def _tags(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str]:
@@ -67,17 +119,18 @@ def _parted(turn: Sequence[HeardAt], tags: Tags) -> dict[str, list[HeardAt]]:
     return parted
 
 
-def _coded(naming: Naming, frequencies: Sequence[Naming], turns: Sequence[Sequence[HeardAt]]) -> dict[int, str]:
-    """A code that was heard on several frequencies beside each other is a tag's on each: codes are given again."""
-    tags = _tags(naming, turns)
+def _coded(tags: dict[int, str], frequencies: Sequence[Naming], turns: Sequence[Sequence[HeardAt]]) -> dict[int, str]:
+    """A code that was heard at the same headings on several frequencies is a tag's on each: codes are given again."""
     named: dict[str, list[list[HeardAt]]] = {}
     for turn in turns:
         for name, of_one in _parted(turn, tags).items():
             named.setdefault(name, []).append(of_one)
-    for frequency in (one for one in frequencies if one.highest_hz < HOPS_FROM_HZ):
+    for frequency in frequencies:
         for name, of_one in named.items():
             on = {one.row.line: frequency.of(one.row) for turn in of_one for one in turn}
-            if name and len(set(on.values()) - {""}) > 1 and _are_beside(of_one, on, steps=0.0):
+            channels = sorted(frequency.hertz[channel] for channel in set(on.values()) - {""})
+            apart = len(channels) > 1 and min(b - a for a, b in pairwise(channels)) >= _CHANNELS_APART_HZ
+            if name and apart and channels[-1] < HOPS_FROM_HZ and _are_beside(of_one, on, steps=0.0):
                 tags |= {line: f"{name} {channel}" for line, channel in on.items() if channel}
     return tags
 
@@ -102,6 +155,8 @@ def _are_beside(turns: Sequence[Sequence[HeardAt]], tags: Tags, steps: float = _
     heard = Counter(tags[one.row.line] for turn in turns for one in turn)
     most = max(filter(None, heard), key=lambda name: heard[name])
     parted = [_parted(turn, tags) for turn in turns]
+    if len({round(one.heading_deg, 1) for part in parted for one in part.get(most, [])}) < FEWEST_HEADINGS:
+        return False
     return _share_headings(
         [
             (part.get(most, []), [one for name, of_one in part.items() if name not in ("", most) for one in of_one])
@@ -113,15 +168,16 @@ def _are_beside(turns: Sequence[Sequence[HeardAt]], tags: Tags, steps: float = _
 
 def _share_headings(turns: Sequence[tuple[Sequence[HeardAt], Sequence[HeardAt]]], steps: float = _STEPS) -> bool:
     """Of turns, each parted in two: whether most readings of either part were made where the other was read, too."""
-    return any(
-        2 * sum(_beside(turn[k], turn[1 - k], steps) for turn in turns) > sum(len(turn[1 - k]) for turn in turns)
-        for k in (0, 1)
-    )
+
+    def mostly(pairs: Sequence[tuple[Sequence[HeardAt], Sequence[HeardAt]]]) -> bool:
+        return 2 * sum(_beside(own, others, steps) for own, others in pairs) > sum(len(others) for _, others in pairs)
+
+    return mostly(turns) or mostly([(others, own) for own, others in turns])
 
 
 def _beside(own: Sequence[HeardAt], others: Sequence[HeardAt], steps: float) -> int:
     """How many of the others were read at a heading of their own, or between two that are no farther apart than so many
-    usual steps; none where the own are too few."""
+    usual steps (0: at no other headings); none where the own are too few."""
     at_deg, others_deg = (np.round([one.heading_deg for one in some], 1) % 360.0 for some in (own, others))
     around = np.unique(at_deg)
     if around.size < FEWEST_HEADINGS:

@@ -81,12 +81,13 @@ def _by_blocks(
     for one in heard:
         blocks[bisect(begins, one.row.line)].append(one)
     blocks = [block for block in blocks if block]
-    tags = tags_of_turns(columns.names, blocks if _went_round(blocks) > 1 else [heard])
-    names = [set[str]() if tags is None else {tags[one.row.line] for one in block} for block in blocks]
-    if any(len(named) != 1 for named in names):
-        return blocks if _went_round(blocks) > 1 else [list(heard)], tags
+    several = _went_round(blocks) > 1
+    tags = tags_of_turns(columns.names, blocks if several else [heard])
     of_tag: dict[str, list[list[HeardAt]]] = {}
-    for (name,), block in zip(names, blocks, strict=True):
+    for block in blocks:
+        name, *others = {"" if tags is None else tags[one.row.line] for one in block}
+        if others or tags is None:
+            return blocks if several else [list(heard)], tags
         of_tag.setdefault(name, []).append(block)
     turns = [turn for of_one in of_tag.values() for turn in _of_one_tag(of_one)]
     return sorted(turns, key=lambda turn: turn[0].row.line), tags

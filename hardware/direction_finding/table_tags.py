@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cache
 
 from hardware.direction_finding.table_file import Row, column_of, number_of, plain_name
 
@@ -22,23 +24,25 @@ _HZ = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 _MOST_MHZ = 30e3
 """A number without a unit is no more than this in MHz: nobody listens below 30 kHz."""
 _DRIFT, _MOST_DRIFT_HZ = 1e-5, 4e3
-"""From one reading to the next of one tag, of its frequency, and at most: channels are 5 kHz apart."""
+"""From one reading to the next of one tag, of its frequency, and at most: channels are 5 kHz apart. Over all of them it
+is no more than the larger of the two."""
 
 
 @dataclass(frozen=True, slots=True)
 class Naming:
-    """What a column names. names: by its cells, of those that name something. complete: each row has one.
-    highest_hz: of frequencies; else 0."""
+    """What a column names. names: by its cells, of those that name something. complete: each row has one. of_tags: the
+    column is named for them. hertz: by name; empty: these are no frequencies."""
 
     column: int
     names: Mapping[str, str]
     complete: bool
-    highest_hz: float = 0.0
+    of_tags: bool = False
+    hertz: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def frequencies(self) -> bool:
         """Whether the names are."""
-        return self.highest_hz > 0.0
+        return bool(self.hertz)
 
     @property
     def several(self) -> int:
@@ -47,7 +51,7 @@ class Naming:
 
     @property
     def of_every_tag(self) -> bool:
-        """Whether it may be written for tags that only their frequencies tell apart."""
+        """Whether it may be written for tags that only another column tells apart."""
         return {name.casefold() for name in self.names.values()} <= _EVERY_TAG
 
     def of(self, row: Row) -> str:
@@ -63,19 +67,21 @@ def namings(names: tuple[str, ...], rows: Sequence[Row]) -> list[Naming]:
         if column is None:
             continue
         if name not in FREQUENCIES:
-            found.append(as_written(column, rows))
+            found.append(replace(as_written(column, rows), of_tags=name in TAGS))
             continue
-        cells = {_cell(row, column) for row in rows}
-        told = _frequencies(name, cells)
-        highest_hz = max((hertz for cell in told if (hertz := frequency_hz(name, cell))), default=0.0)
-        found.append(Naming(column, told, len(told) == len(cells), highest_hz))
+        cells = Counter(_cell(row, column) for row in rows)
+        told, hertz = _frequencies(name, cells)
+        found.append(Naming(column, told, len(told) == len(cells), hertz=hertz))
     return [one for one in found if one.names]
 
 
 def as_written(column: int, rows: Sequence[Row]) -> Naming:
-    """Each cell is a name, but for those that say there is none."""
-    cells = {_cell(row, column) for row in rows}
-    names = {cell: cell for cell in cells if cell.casefold() not in _NO_NAMES}
+    """Each cell is a name, but for those that say there is none; large and small letters and blanks do not count."""
+    cells = Counter(_cell(row, column) for row in rows)
+    written: dict[str, str] = {}
+    for cell in sorted(cells, key=lambda cell: -cells[cell]):
+        written.setdefault(_plain(cell), cell)
+    names = {cell: written[_plain(cell)] for cell in cells if _plain(cell) not in _NO_NAMES}
     return Naming(column, names, len(names) == len(cells))
 
 
@@ -83,15 +89,24 @@ def tags_in(names: tuple[str, ...], rows: Sequence[Row]) -> Naming | None:
     """That of a list of bearings: the column of tags if it names one in each row, else the one that names most. A
     single frequency names none."""
     found = namings(names, rows)
-    if any(one.frequencies and one.several > 1 for one in found):
-        found = [one for one in found if one.frequencies or not one.of_every_tag]
+    if any(one.several > 1 for one in found):
+        found = [one for one in found if not one.of_every_tag]
     best: Naming | None = None
     for one in found:
-        if one.complete and column_of(names, *TAGS) == one.column:
+        if one.complete and one.of_tags:
             return one
         if one.several > max(0 if best is None else best.several, one.frequencies):
             best = one
     return best
+
+
+def meant(asked: str, names: Collection[str]) -> str:
+    """Which of the names is asked for, in other letters or digits, too; empty: none."""
+    if asked in names:
+        return asked
+    plain, number = _plain(asked), number_of(asked)
+    alike = (name for name in sorted(names) if _plain(name) == plain or (number and number_of(name) == number))
+    return next(alike, "")
 
 
 def frequency_hz(name: str, cell: str) -> float | None:
@@ -99,23 +114,41 @@ def frequency_hz(name: str, cell: str) -> float | None:
     value = number_of(_UNIT.sub("", cell))
     if value is None or not 0.0 < value < math.inf:
         return None
-    unit = _UNIT.search(cell) or _UNIT.search(plain_name(name).replace("_", " "))
-    if unit is None:
-        return value * (_HZ["m"] if value < _MOST_MHZ else 1.0)
-    return value * _HZ[unit[1].lower()]
+    unit = _UNIT.search(cell)
+    factor = _unit_of(name) if unit is None else _HZ[unit[1].lower()]
+    return value * (factor or (_HZ["m"] if value < _MOST_MHZ else 1.0))
+
+
+@cache
+def _unit_of(column: str) -> float | None:
+    unit = _UNIT.search(plain_name(column).replace("_", " "))
+    return None if unit is None else _HZ[unit[1].lower()]
 
 
 def _cell(row: Row, column: int) -> str:
     return row.cells[column] if column < len(row.cells) else ""
 
 
-def _frequencies(column: str, cells: Collection[str]) -> dict[str, str]:
-    """Those that are one tag's, measured or written otherwise, by the lowest of them."""
+def _plain(name: str) -> str:
+    return " ".join(name.split()).casefold()
+
+
+def _frequencies(column: str, cells: Counter[str]) -> tuple[dict[str, str], dict[str, float]]:
+    """(those that are one tag's, measured or written otherwise, by the one that is written most; hertz by name)."""
     told = sorted((hertz, cell) for cell in cells if (hertz := frequency_hz(column, cell)) is not None)
     names: dict[str, str] = {}
-    name, before = "", 0.0
-    for hertz, cell in told:
-        if hertz - before > min(_DRIFT * hertz, _MOST_DRIFT_HZ):
-            name = f"{number_of(_UNIT.sub('', cell)):.12g}"
-        names[cell], before = name, hertz
-    return names
+    of_name: dict[str, float] = {}
+    begin = 0
+    for end in range(1, len(told) + 1):
+        if end < len(told) and _is_drift(told[begin][0], told[end - 1][0], told[end][0]):
+            continue
+        hertz, most = max(told[begin:end], key=lambda one: cells[one[1]])
+        name = f"{number_of(_UNIT.sub('', most)):.12g}"
+        names |= {cell: name for _, cell in told[begin:end]}
+        of_name[name], begin = hertz, end
+    return names, of_name
+
+
+def _is_drift(first_hz: float, before_hz: float, hertz: float) -> bool:
+    drift = _DRIFT * hertz
+    return hertz - before_hz <= min(drift, _MOST_DRIFT_HZ) and hertz - first_hz <= max(drift, _MOST_DRIFT_HZ)

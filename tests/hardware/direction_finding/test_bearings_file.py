@@ -189,6 +189,7 @@ def test_biologists_files_in_utm_hold_the_bearings_of_each_frequency(tmp_path: P
         ("tag,frequency", ("999,150.12", "999,150.34", "999,150.12"), ("150.12", "150.34", "150.12")),
         ("tag,frequency", ("999,150.12", "999,150.12", "999,150.12"), ("999",) * 3),
         ("animal", ("fox", "NA", "-"), ("fox", None, None)),
+        ("tag,collar", ("VHF,fox", "VHF,hare", "VHF,Fox"), ("fox", "hare", "fox")),
     ],
 )
 def test_tags_are_named_by_the_column_that_tells_several(

@@ -124,7 +124,65 @@ def test_a_tag_that_hops_is_the_one_that_is_named(tmp_path: Path) -> None:
     assert heard(read(tmp_path, "tag,frequency_mhz", rows, "lynx")) == [("lynx", 144)]
 
 
-def test_strays_heard_once_do_not_make_two_tags_one(tmp_path: Path) -> None:
-    strays = [f"{heading},-75,x{heading}" for heading in range(5, 305, 10)]
+def test_ids_that_were_misread_do_not_make_two_tags_one(tmp_path: Path) -> None:
+    strays = [f"{heading},-75,x{heading}" for heading in range(1, 360, 5)]
     rows = [*rows_of(ROUND, "lynx"), *rows_of(ROUND, "hare"), *strays]
     assert heard(read(tmp_path, "collar", rows, "hare")) == [("hare", 36)]
+
+
+@pytest.mark.parametrize("header", ["tag", "frequency_mhz", "tag,sweep"])
+def test_a_name_in_merged_cells_is_that_of_the_rows_below(tmp_path: Path, header: str) -> None:
+    numbered = (",1", ",2") if "sweep" in header else ("", "")
+    rows = [
+        f"{heading},-60,{name if k == 0 else ''}{number}"
+        for name, number in zip(("151", "150"), numbered, strict=True)
+        for k, heading in enumerate(ROUND)
+    ]
+    assert heard(read(tmp_path, header, rows, "150")) == [("150", 36)]
+    with refusing(TagNotHeard(str(tmp_path / "turn.csv"), 2, "99", ("150", "151")), RecordingError):
+        read(tmp_path, header, rows, "99")
+
+
+def test_two_that_jitter_side_by_side_are_two(tmp_path: Path) -> None:
+    rows = [f"{heading},-60,{150.1 + 0.0005 * (k % 9 - 4):.4f}" for k, heading in enumerate(ROUND)]
+    rows += [f"{heading + 3},-60,{150.106 + 0.0005 * (k % 9 - 4):.4f}" for k, heading in enumerate(ROUND)]
+    (recorded,) = read(tmp_path, "frequency_mhz", rows).sweeps
+    assert recorded.sweep.heading_deg.tolist() == [*map(float, ROUND)]
+
+
+@pytest.mark.parametrize("megahertz", [150, 433])
+def test_a_hop_to_one_channel_after_another_is_one_turn(tmp_path: Path, megahertz: int) -> None:
+    rows = [f"{5 * k},-60,{megahertz + 0.05 * (k * 29 % 71):.2f}" for k in range(72)]
+    assert heard(read(tmp_path, "frequency_mhz", rows)) == [(None, 72)]
+
+
+def test_a_few_readings_do_not_own_what_nobody_recognized(tmp_path: Path) -> None:
+    rows = [*rows_of(range(40, 110, 10), "lynx", -50.0), *rows_of(ROUND, "", -45.0)]
+    assert heard(read(tmp_path, "tag", rows)) == [("lynx", 7)]
+
+
+def test_a_turn_that_names_nobody_is_not_that_of_a_tag_that_is_asked_for(tmp_path: Path) -> None:
+    recording = read(tmp_path, "tag", [*rows_of(ROUND, "7"), "", *rows_of(ROUND, "")], "7")
+    assert heard(recording) == [("7", 36)]
+    assert recording.remarks == (TagNotHeard(str(tmp_path / "turn.csv"), 39, "7", ("7",)),)
+
+
+@pytest.mark.parametrize(
+    ("header", "one", "other", "asked", "named"),
+    [
+        ("frequency_mhz", "150.100", "150.2", "150.100", "150.1"),
+        ("animal", "Lynx  1", "hare", "lynx 1", "Lynx  1"),
+        ("tag,animal", "7,lynx", "8,hare", "Lynx", "lynx"),
+        ("tag,frequency", "7,150.1", "7,150.2", "7", "7"),
+    ],
+)
+def test_a_tag_may_be_asked_for_as_it_is_written_or_by_another_column(
+    tmp_path: Path, header: str, one: str, other: str, asked: str, named: str
+) -> None:
+    recording = read(tmp_path, header, [*rows_of(ROUND, one), *rows_of(ROUND, other)], asked)
+    assert [tag for tag, _ in heard(recording)] == [named]
+
+
+def test_small_letters_name_no_other_animal(tmp_path: Path) -> None:
+    rows = [*rows_of(ROUND[:20], "Lynx"), *rows_of(ROUND[20:], "lynx")]
+    assert heard(read(tmp_path, "animal", rows)) == [("Lynx", 36)]
