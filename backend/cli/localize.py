@@ -23,6 +23,7 @@ from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_s
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, bearings_in
 from hardware.direction_finding.heading import HeadingError, declination_deg
 from hardware.direction_finding.table_file import RecordingError, listed, read_table
+from hardware.direction_finding.table_tags import meant
 from hardware.frame import LocalFrame, compass_to_angle, middle_of
 from hardware.readings import Place
 from hardware.reasons.table import FileUnreadable
@@ -169,7 +170,8 @@ def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) 
     tags = sorted({b.tag for b in bearings if b.tag is not None})
     if tag is None and len(tags) > 1:
         raise ValueError(f"{file} holds bearings of several tags ({', '.join(tags)}); choose one with --tag")
-    chosen = [b for b in bearings if tag is None or b.tag == tag]
+    wanted = None if tag is None else meant(tag, tags)
+    chosen = [b for b in bearings if wanted is None or b.tag == wanted]
     if not chosen:
         raise ValueError(f"{file} holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
     return chosen

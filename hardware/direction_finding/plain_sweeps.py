@@ -104,7 +104,7 @@ def _sweep(
     line, wanted = turn[0].row.line, tag
     named = Counter(name for one in turn if (name := "" if tags is None else tags[one.row.line]))
     if tags is not None and tag is not None and tag not in named:
-        remarks.append(TagNotHeard(file, line, tag, some_of(named or {*tags.values()} - {""})))
+        remarks.append(TagNotHeard(file, line, tag, some_of(named or "-")))
         return None
     if tags is not None and named:
         wanted = named.most_common(1)[0][0] if tag is None else tag

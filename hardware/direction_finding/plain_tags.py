@@ -11,7 +11,8 @@ import numpy as np
 
 from hardware.direction_finding.heard_at import HeardAt
 from hardware.direction_finding.plain_columns import ROUND_DEG, turned_deg
-from hardware.direction_finding.table_tags import Naming, meant, namings
+from hardware.direction_finding.table_file import plain_name
+from hardware.direction_finding.table_tags import Naming, meant, namings, near
 
 Tags = Mapping[int, str]
 """By the line of a reading; empty: none is named."""
@@ -24,8 +25,8 @@ _CHANNELS_APART_HZ = 10e3
 """A strong tag is heard, and a receiver tuned, on those nearer to its own."""
 _FEWEST_TOLD = 3
 """Rows: a name that is told less often may be a misread one, or a note."""
-_NAMED = 0.2
-"""Of the rows have such a name where a column says whose they are."""
+_NAMED, _OFTEN = 0.2, 16
+"""Of the rows have such a name where a column says whose they are, or so many rows have one."""
 _STEPS = 1.5
 """As wide as a tag's usual one from heading to heading: in a wider one it was not read."""
 
@@ -46,20 +47,26 @@ def tags_of_turns(names: tuple[str, ...], turns: Sequence[Sequence[HeardAt]]) ->
         tags = _filled_down(one, turns)
         if tags is not None or _are_several(one, turns):
             return tags or _tags(one, turns)
-    return next((_tags(one, turns) for one in named if one.several == 1 and not _is_note(one, turns)), None)
+    single = next((one for one in named if one.several == 1 and not _is_note(one, turns)), None)
+    return None if single is None else _filled_down(single, turns) or _tags(single, turns)
 
 
 def as_asked(
     tag: str, names: tuple[str, ...], turns: Sequence[Sequence[HeardAt]], tags: Tags | None
 ) -> tuple[Tags | None, str]:
-    """Whose readings they are where that tag is asked for, by another column if that one names it; and its name."""
+    """Whose readings they are where that tag is asked for, by another column if that one names it, too; and its name.
+    Several animals of one species are not one of them."""
     name = "" if tags is None else meant(tag, {*tags.values()} - {""})
     if name:
         return tags, name
     for one in namings(names, [one.row for turn in turns for one in turn]):
-        name = meant(tag, {*one.names.values()})
-        if name and (tags is not None or not one.frequencies):
-            return _tags(one, turns), name
+        name = meant(tag, {*one.names.values()}) or near(tag, names[one.column], one.hertz)
+        if not name or (tags is None and one.frequencies):
+            continue
+        found = _tags(one, turns)
+        others = set[str]() if tags is None else {tags[line] for line, told in found.items() if told == name} - {""}
+        if len(others) < 2 or not plain_name(names[one.column]).startswith("animal"):
+            return found, name
     return tags, tag
 
 
@@ -67,20 +74,24 @@ def turn_of(tag: str, turn: Sequence[HeardAt], tags: Tags) -> list[HeardAt]:
     """Its readings, and those that name none where it would else be missing: whatever is heard there is no more."""
     parted = _parted(turn, tags)
     own, unnamed = parted.get(tag, []), parted.get("", [])
-    alone = len(parted) == 2
-    if not unnamed or not (
-        (alone and len(own) == 1) or ((alone or len(own) >= FEWEST_HEADINGS) and _are_its_own(own, unnamed))
-    ):
+    if not unnamed or not _owns(own, unnamed, alone=len(parted) == 2):
         return own
     return [one for one in turn if tags[one.row.line] in ("", tag)]
+
+
+def _owns(own: Sequence[HeardAt], unnamed: Sequence[HeardAt], *, alone: bool) -> bool:
+    """alone: no other tag is named in that turn."""
+    if len(own) == 1:
+        return alone
+    return (alone or len(own) >= FEWEST_HEADINGS) and _are_its_own(own, unnamed)
 
 
 def _told(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str] | None:
     """None where too few rows have a name that is told often."""
     tags = _tags(naming, turns)
-    told = Counter(tags.values())
-    often = sum(count for name, count in told.items() if name and count >= _FEWEST_TOLD)
-    return tags if often >= _NAMED * len(tags) else None
+    told = Counter(name for name in tags.values() if name)
+    often = sum(count for count in told.values() if count >= _FEWEST_TOLD)
+    return tags if often >= _NAMED * len(tags) or max(told.values()) >= _OFTEN else None
 
 
 def _is_note(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> bool:
@@ -90,20 +101,24 @@ def _is_note(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> bool:
 
 
 def _filled_down(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str] | None:
-    """Each name for the rows below it, too, as in cells that were merged; None where a name has other rows as well, or
-    the turn is parted where nothing went round."""
+    """Each name for the rows and turns below it, too, as in cells that were merged; None where a name has other rows as
+    well, or the turn is parted where nothing went round."""
     if naming.complete:
         return None
     tags: dict[int, str] = {}
+    last = ""
     for turn in turns:
         begins = [k for k, one in enumerate(turn) if naming.of(one.row)]
         runs = [turn[begin:end] for begin, end in pairwise([*begins, len(turn)])]
         named = [naming.of(run[0].row) for run in runs]
-        if begins[:1] != [0] or len({*named}) < len(named):
+        if last and not named:
+            runs, named = [turn], [last]
+        elif begins[:1] != [0] or len({*named}) < len(named):
             return None
         if len(runs) > 1 and not all(turned_deg([one.heading_deg for one in run]) >= ROUND_DEG for run in runs):
             return None
         tags |= {one.row.line: name for name, run in zip(named, runs, strict=True) for one in run}
+        last = named[-1]
     return tags
 
 

@@ -76,12 +76,13 @@ def namings(names: tuple[str, ...], rows: Sequence[Row]) -> list[Naming]:
 
 
 def as_written(column: int, rows: Sequence[Row]) -> Naming:
-    """Each cell is a name, but for those that say there is none; large and small letters and blanks do not count."""
+    """Each cell is a name, but for those that say there is none; large and small letters and blanks do not count,
+    and 07 and 7.0 are 7."""
     cells = Counter(_cell(row, column) for row in rows)
     written: dict[str, str] = {}
     for cell in sorted(cells, key=lambda cell: -cells[cell]):
-        written.setdefault(_plain(cell), cell)
-    names = {cell: written[_plain(cell)] for cell in cells if _plain(cell) not in _NO_NAMES}
+        written.setdefault(_alike(cell), cell)
+    names = {cell: written[_alike(cell)] for cell in cells if _plain(cell) not in _NO_NAMES}
     return Naming(column, names, len(names) == len(cells))
 
 
@@ -101,12 +102,20 @@ def tags_in(names: tuple[str, ...], rows: Sequence[Row]) -> Naming | None:
 
 
 def meant(asked: str, names: Collection[str]) -> str:
-    """Which of the names is asked for, in other letters or digits, too; empty: none."""
+    """Which of the names is asked for, in other letters or digits, too (150.100 is 150.1); empty: none."""
     if asked in names:
         return asked
-    plain, number = _plain(asked), number_of(asked)
-    alike = (name for name in sorted(names) if _plain(name) == plain or (number and number_of(name) == number))
-    return next(alike, "")
+    wanted = _alike(asked), _digits(asked)
+    return next((name for name in sorted(names) if _alike(name) == wanted[0] or _digits(name) == wanted[1] != ""), "")
+
+
+def near(asked: str, column: str, hertz: Mapping[str, float]) -> str:
+    """Which of the frequencies is asked for, if it drifted no farther from there; empty: none. hertz: by name."""
+    wanted = frequency_hz(column, asked) if hertz else None
+    if wanted is None:
+        return ""
+    nearest = min(hertz, key=lambda name: abs(hertz[name] - wanted))
+    return nearest if abs(hertz[nearest] - wanted) <= _DRIFT * wanted else ""
 
 
 def frequency_hz(name: str, cell: str) -> float | None:
@@ -131,6 +140,20 @@ def _cell(row: Row, column: int) -> str:
 
 def _plain(name: str) -> str:
     return " ".join(name.split()).casefold()
+
+
+def _alike(name: str) -> str:
+    """The same for names that are one."""
+    digits = _digits(name)
+    return digits if digits.endswith(".") else _plain(name)
+
+
+def _digits(name: str) -> str:
+    """Of a number without a sign, with a point and without zeros that say nothing; empty: it is none."""
+    whole, _, rest = name.replace(",", ".").partition(".")
+    if not (whole + rest).isdecimal() or not whole:
+        return ""
+    return f"{whole.lstrip('0')}.{rest.rstrip('0')}"
 
 
 def _frequencies(column: str, cells: Counter[str]) -> tuple[dict[str, str], dict[str, float]]:

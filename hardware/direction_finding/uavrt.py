@@ -23,6 +23,7 @@ import numpy as np
 
 from hardware.direction_finding.plain_columns import is_plain
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, some_of
+from hardware.direction_finding.table_tags import meant
 from hardware.frame import middle_of
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import (
@@ -249,7 +250,7 @@ def _sweep(
     if not heard:
         remarks.append(RotationIrregular(file, line, "empty"))
         return None
-    wanted = heard.most_common(1)[0][0] if tag is None else tag
+    wanted = heard.most_common(1)[0][0] if tag is None else meant(tag, heard) or tag
     if wanted not in heard:
         remarks.append(TagNotHeard(file, line, wanted, some_of(heard)))
         return None

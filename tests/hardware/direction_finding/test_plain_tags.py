@@ -164,7 +164,7 @@ def test_a_few_readings_do_not_own_what_nobody_recognized(tmp_path: Path) -> Non
 def test_a_turn_that_names_nobody_is_not_that_of_a_tag_that_is_asked_for(tmp_path: Path) -> None:
     recording = read(tmp_path, "tag", [*rows_of(ROUND, "7"), "", *rows_of(ROUND, "")], "7")
     assert heard(recording) == [("7", 36)]
-    assert recording.remarks == (TagNotHeard(str(tmp_path / "turn.csv"), 39, "7", ("7",)),)
+    assert recording.remarks == (TagNotHeard(str(tmp_path / "turn.csv"), 39, "7", ("-",)),)
 
 
 @pytest.mark.parametrize(
@@ -173,6 +173,8 @@ def test_a_turn_that_names_nobody_is_not_that_of_a_tag_that_is_asked_for(tmp_pat
         ("frequency_mhz", "150.100", "150.2", "150.100", "150.1"),
         ("animal", "Lynx  1", "hare", "lynx 1", "Lynx  1"),
         ("tag,animal", "7,lynx", "8,hare", "Lynx", "lynx"),
+        ("frequency_mhz", "150.1004", "150.2", "150.1 MHz", "150.1004"),
+        ("collar", "07", "12", "7", "07"),
         ("tag,frequency", "7,150.1", "7,150.2", "7", "7"),
     ],
 )
@@ -183,6 +185,29 @@ def test_a_tag_may_be_asked_for_as_it_is_written_or_by_another_column(
     assert [tag for tag, _ in heard(recording)] == [named]
 
 
-def test_small_letters_name_no_other_animal(tmp_path: Path) -> None:
-    rows = [*rows_of(ROUND[:20], "Lynx"), *rows_of(ROUND[20:], "lynx")]
-    assert heard(read(tmp_path, "animal", rows)) == [("Lynx", 36)]
+@pytest.mark.parametrize(("most", "other"), [("Lynx", "lynx"), ("7", "07"), ("7.0", "7")])
+def test_other_letters_and_zeros_name_no_other_animal(tmp_path: Path, most: str, other: str) -> None:
+    rows = [*rows_of(ROUND[:20], most), *rows_of(ROUND[20:], other)]
+    assert heard(read(tmp_path, "animal", rows)) == [(most, 36)]
+
+
+@pytest.mark.parametrize(("asked", "cells"), [("12", ("1_2", "8")), ("0", ("00x", "8")), ("lynx", ("150.1", "150.2"))])
+def test_a_tag_that_is_asked_for_is_no_other_and_not_several(
+    tmp_path: Path, asked: str, cells: tuple[str, str]
+) -> None:
+    rows = [line for cell in cells for line in rows_of(ROUND, f"{cell},lynx")]
+    with refusing(TagNotHeard(str(tmp_path / "turn.csv"), 2, asked, cells), RecordingError):
+        read(tmp_path, f"{'frequency' if asked == 'lynx' else 'tag'},animal", rows, asked)
+
+
+def test_a_name_in_merged_cells_is_that_of_the_turns_below(tmp_path: Path) -> None:
+    firsts = ("lynx", "", "hare", "")
+    rows = [
+        f"{heading},-60,{'' if k else name},{n}" for n, name in enumerate(firsts) for k, heading in enumerate(ROUND)
+    ]
+    assert heard(read(tmp_path, "animal,sweep", rows)) == [(name, 36) for name in ("lynx", "lynx", "hare", "hare")]
+
+
+def test_two_that_were_seldom_recognized_are_two(tmp_path: Path) -> None:
+    rows = [*rows_of(range(0, 360, 12), "7"), *rows_of(range(5, 365, 15), "12"), *rows_of(range(400), "")]
+    assert heard(read(tmp_path, "tag", rows)) == [("7", 30)]
