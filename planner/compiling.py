@@ -32,7 +32,11 @@ jit = cast(Compiler, numba.njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS))  # py
 inlined = cast(Compiler, numba.njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS))  # pyright: ignore[reportCallIssue]
 """For functions that take `rules` or `work`: these are passed by value, some hundred words a call."""
 
-exact = cast(Compiler, numba.njit(nogil=True))
+in_order = cast(Compiler, numba.njit(fastmath=False, _nrt=False, **_FLAGS))  # pyright: ignore[reportCallIssue]
+"""As `jit`, in the order that is written: numbers of 32 bits that are the same on every processor. What is left out is
+taken from whoever calls."""
+
+exact = cast(Compiler, numba.njit(fastmath=False, nogil=True))
 """In the order that is written: geometry that a rounding could turn round."""
 exact_entry = cast(Compiler, numba.njit(cache=True, nogil=True))
 """As `exact`, for what Python calls."""

@@ -29,7 +29,7 @@ from planner.belief.compiled_rows import (
 )
 from planner.belief.compiled_way_tables import ACROSS, ALONG, COLUMNS, NEAREST, TURN, middle_of, table_of
 from planner.belief.source_errors import EVEN_STEP, Nodes
-from planner.compiling import allocating, jit
+from planner.compiling import allocating, in_order, jit
 from planner.on_the_way import LEAST_INDEPENDENT, NEAR_M, Stretch, worth_of
 from planner.types import FloatArray, IntArray
 
@@ -125,7 +125,7 @@ def _near(x, y, way, k):
     return False
 
 
-@jit
+@in_order
 def _weigh(off_x, off_y, way, k, bias, rate, scratch):
     """Multiplies (1 - e) f / c + e of stretch k into the coarse nodes, `bias` the first of them, for the emitter at
     (off_x, off_y) m from its middle: f / c linear across the stretch, of second degree along it and between columns."""
@@ -151,7 +151,7 @@ def _weigh(off_x, off_y, way, k, bias, rate, scratch):
             mixed(scratch.coarse[s * rates + e], scratch.found, 1.0 - rate[e], rate[e])
 
 
-@jit
+@in_order
 def _of_three(t):
     """Weights of three neighbours for what lies t from the middle one: a parabola through them."""
     half, one = np.float32(0.5), np.float32(1.0)

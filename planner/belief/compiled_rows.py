@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.compiling import jit
+from planner.compiling import in_order, jit
 
 SMALLEST = 1e-37
 """Of a ratio: the smallest number of 32 bits, about."""
@@ -48,35 +48,35 @@ def mixed(row, ratio, share, rest):
         row[b] *= share * ratio[b] + rest
 
 
-@jit
+@in_order
 def blended(row, first, second, third, of_first, of_second, of_third):
     """Three rows of a table, weighed."""
     for b in range(len(row)):
         row[b] = of_first * first[b] + of_second * second[b] + of_third * third[b]
 
 
-@jit
+@in_order
 def blended_more(row, first, second, third, of_first, of_second, of_third):
     """The same, added to what the row holds."""
     for b in range(len(row)):
         row[b] += of_first * first[b] + of_second * second[b] + of_third * third[b]
 
 
-@jit
+@in_order
 def shifted(found, row, of_first, of_second, of_third):
     """Each three neighbours of a row (n + 2,), weighed, where that is not negative."""
     for n in range(len(found)):
         found[n] = max(of_first * row[n] + of_second * row[n + 1] + of_third * row[n + 2], np.float32(0.0))
 
 
-@jit
+@in_order
 def ratios(found, row):
     """Each entry of a row (n + 1,), none of them negative, over the one before."""
     for b in range(len(found)):
         found[b] = min(max(row[b + 1] / max(row[b], LEAST), SMALLEST), 1.0 / SMALLEST)
 
 
-@jit
+@in_order
 def rooted(row):
     """The square root of each entry."""
     for b in range(len(row)):

@@ -2,11 +2,13 @@ import ast
 import importlib
 import subprocess
 import sys
+from typing import Any
 
+import numpy as np
 import pytest
 
 from planner.belief import compiled_evidence, compiled_tables
-from planner.compiling import COMPILED_IN, SOURCES
+from planner.compiling import COMPILED_IN, SOURCES, in_order, jit
 from planner.kernels.compiled.rollout import rollouts
 from planner.kernels.value.iteration import iterate
 from planner.kernels.value.transitions import transitions
@@ -92,3 +94,24 @@ def test_a_first_plan_does_without_what_numba_only_looks_for_and_leaves_it_usabl
     warm_up()
     done = subprocess.run([sys.executable, "-c", FRESH_PROCESS], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def machine_code(compiled: Any) -> str:
+    """As LLVM has it."""
+    return next(iter(compiled.inspect_llvm().values()))
+
+
+def test_code_that_keeps_its_order_does_so_within_code_that_does_not() -> None:
+    @in_order
+    def inner(a, b, c):
+        return a * b + c
+
+    @jit
+    def outer(a, b, c):
+        return inner(a, b, c) * c
+
+    outer(*np.ones(3, dtype=np.float32))
+    strict, fast = (machine_code(some) for some in (inner, outer))
+    assert "fmul float" in strict
+    assert "contract" not in strict
+    assert "contract" in fast
