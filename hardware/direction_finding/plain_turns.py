@@ -86,7 +86,7 @@ def _by_blocks(
     of_tag: dict[str, list[list[HeardAt]]] = {}
     for block in blocks:
         name, *others = {"" if tags is None else tags[one.row.line] for one in block}
-        if others or tags is None:
+        if others or tags is None or not (name or several):
             return blocks if several else [list(heard)], tags
         of_tag.setdefault(name, []).append(block)
     turns = [turn for of_one in of_tag.values() for turn in _of_one_tag(of_one)]

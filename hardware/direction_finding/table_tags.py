@@ -8,7 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import lru_cache
 
 from hardware.direction_finding.table_file import Row, column_of, number_of, plain_name
 
@@ -128,7 +128,7 @@ def frequency_hz(name: str, cell: str) -> float | None:
     return value * (factor or (_HZ["m"] if value < _MOST_MHZ else 1.0))
 
 
-@cache
+@lru_cache
 def _unit_of(column: str) -> float | None:
     unit = _UNIT.search(plain_name(column).replace("_", " "))
     return None if unit is None else _HZ[unit[1].lower()]

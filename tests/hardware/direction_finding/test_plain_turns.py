@@ -121,3 +121,9 @@ def test_blocks_of_one_tag_each_are_turns_of_that_tag(tmp_path: Path, name: str)
         ("151", 36), ("150", 37), ("151", 36), ("152", 36),
     ]  # fmt: skip
     assert recording.remarks == ()
+
+
+def test_a_half_that_is_not_named_is_of_the_same_turn(tmp_path: Path) -> None:
+    halves = turn("lynx", 100, range(0, 180, 10)), turn("", 100, range(180, 360, 10))
+    (recorded,) = read(tmp_path, "tag,heading_deg,power_db", [*halves[0], "", *halves[1]]).sweeps
+    assert (recorded.sweep.tag, recorded.sweep.power_db.size) == ("lynx", 36)
