@@ -36,7 +36,7 @@ import httpx
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pieces import figures_kept, rows_kept
 from tests.benchmarks.figures.writer import add_out, write
-from tests.benchmarks.kill_findings import Findings, figures, runs
+from tests.benchmarks.kill_findings import HIGH_LOAD, Findings, figures, runs
 from tests.conftest import PostgresCluster, postgres_programs, postgres_user
 from tests.system.console import Console, Event, console, simulated_vehicle
 
@@ -375,9 +375,12 @@ def piece(given: dict[str, Any], out: Path | None, *, add: bool) -> bool:
     found = asyncio.run(run(**given))
     print(json.dumps(found.summary(), indent=2), flush=True)
     database = {"sqlite": "SQLite", "postgresql": "PostgreSQL"}[given["database"]]
-    only_whole = given["whole"] == 1
-    name = f"{'whole_starts' if only_whole else 'kill'}_{given['database']}"
-    title = f"{'Whole starts after kill -9' if only_whole else 'Kill -9'}, {database}"
+    name, title = "kill", "Kill -9"
+    if given["whole"] == 1:
+        name, title = "whole_starts", "Whole starts after kill -9"
+        if begun.load >= HIGH_LOAD:
+            name, title = f"{name}_loaded", f"{title} on a busy machine"
+    name, title = f"{name}_{given['database']}", f"{title}, {database}"
     before = out if add else None
     table = rows_kept(before, name, runs(found, begun, given["seed"]))
     made = figures_kept(before, name, figures(found, table, database, begun.load))
