@@ -45,9 +45,9 @@ LATEST_S = 4_102_444_800.0
 FEWEST_BEARINGS = 3
 """Fewer may well all lie within six degrees of north."""
 FEWEST_READINGS = 8
+"""An antenna's turn has at least this many. No list of bearings has so many from one spot in all directions."""
 HOVERS_M = 10.0
-"""Of an antenna's turn: at least this many readings, all this near to the first. A list of bearings never has so many
-from one spot in all directions; bearings from a circle around an animal are farther apart."""
+"""All readings of a turn are within this distance of its first. Bearings taken around an animal are farther apart."""
 EXPECTED = ("lat", "lon", "bearing_deg")
 EXPECTED_UTM = ("easting", "northing", "utm_zone", "bearing_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")

@@ -22,13 +22,13 @@ FEWEST_HEADINGS = 8
 HOPS_FROM_HZ = 300e6
 """Tags below stay on their frequency; transmitters above may change it from pulse to pulse."""
 _CHANNELS_APART_HZ = 10e3
-"""A strong tag is heard, and a receiver tuned, on those nearer to its own."""
+"""On nearer channels a strong tag is heard, too, and a receiver may be tuned to one of them."""
 _FEWEST_TOLD = 3
-"""Rows: a name that is told less often may be a misread one, or a note."""
+"""Rows: a name in fewer of them may be a misreading, or a note."""
 _NAMED, _OFTEN = 0.2, 16
-"""Of the rows have such a name where a column says whose they are, or so many rows have one."""
+"""A column names tags where names that recur fill this share of its rows, or one of them fills this many rows."""
 _STEPS = 1.5
-"""As wide as a tag's usual one from heading to heading: in a wider one it was not read."""
+"""Times a tag's usual step from heading to heading: in a wider gap the tag was not read."""
 
 
 def tags_of_turns(names: tuple[str, ...], turns: Sequence[Sequence[HeardAt]]) -> Tags | None:
@@ -71,7 +71,7 @@ def as_asked(
 
 
 def turn_of(tag: str, turn: Sequence[HeardAt], tags: Tags) -> list[HeardAt]:
-    """Its readings, and those that name none where it would else be missing: whatever is heard there is no more."""
+    """Its readings, and those without a name at headings where the tag itself was not read."""
     parted = _parted(turn, tags)
     own, unnamed = parted.get(tag, []), parted.get("", [])
     if not unnamed or not _owns(own, unnamed, alone=len(parted) == 2):
@@ -80,14 +80,14 @@ def turn_of(tag: str, turn: Sequence[HeardAt], tags: Tags) -> list[HeardAt]:
 
 
 def _owns(own: Sequence[HeardAt], unnamed: Sequence[HeardAt], *, alone: bool) -> bool:
-    """alone: no other tag is named in that turn."""
+    """Whether readings without a name belong to a tag. alone: no other tag is named in that turn."""
     if len(own) == 1:
         return alone
     return (alone or len(own) >= FEWEST_HEADINGS) and _are_its_own(own, unnamed)
 
 
 def _told(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str] | None:
-    """None where too few rows have a name that is told often."""
+    """None where names that recur fill too few rows."""
     tags = _tags(naming, turns)
     told = Counter(name for name in tags.values() if name)
     often = sum(count for count in told.values() if count >= _FEWEST_TOLD)
@@ -95,7 +95,7 @@ def _told(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> dict[int, str] 
 
 
 def _is_note(naming: Naming, turns: Sequence[Sequence[HeardAt]]) -> bool:
-    """Whether it names something in few rows only, and not in a turn's first."""
+    """Whether it has names in a few rows only, none of them the first row of a turn."""
     told = sum(naming.of(one.row) != "" for turn in turns for one in turn)
     return told < _FEWEST_TOLD and not any(naming.of(turn[0].row) for turn in turns)
 
@@ -135,7 +135,7 @@ def _parted(turn: Sequence[HeardAt], tags: Tags) -> dict[str, list[HeardAt]]:
 
 
 def _coded(tags: dict[int, str], frequencies: Sequence[Naming], turns: Sequence[Sequence[HeardAt]]) -> dict[int, str]:
-    """A code that was heard at the same headings on several frequencies is a tag's on each: codes are given again."""
+    """A code that was heard at the same headings on several frequencies is a tag's on each: codes are reused."""
     named: dict[str, list[list[HeardAt]]] = {}
     for turn in turns:
         for name, of_one in _parted(turn, tags).items():

@@ -18,14 +18,14 @@ _FREQUENCIES = ("frequency", "freq", "frequenz", "fréquence", "center_frequency
 FREQUENCIES = tuple(f"{name}{unit}" for name in _FREQUENCIES for unit in ("", "_hz", "_khz", "_mhz", "_ghz"))
 _NO_NAMES = frozenset({"", "-", "--", "?", "na", "n/a", "nan", "none", "null"})
 _EVERY_TAG = frozenset({"999", "vhf"})
-"""What receivers of coded tags write for each that sends no code."""
+"""What receivers of coded tags write for every tag that sends no code."""
 _UNIT = re.compile(r" ?([kMG]?)Hz$", re.IGNORECASE)
 _HZ = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 _MOST_MHZ = 30e3
 """A number without a unit is no more than this in MHz: nobody listens below 30 kHz."""
 _DRIFT, _MOST_DRIFT_HZ = 1e-5, 4e3
-"""From one reading to the next of one tag, of its frequency, and at most: channels are 5 kHz apart. Over all of them it
-is no more than the larger of the two."""
+"""How far apart neighbouring frequencies of one tag may lie: this share of the frequency, and never more than this many
+hertz, since channels are 5 kHz apart. All of them together span no more than the larger of the two."""
 
 
 @dataclass(frozen=True, slots=True)
