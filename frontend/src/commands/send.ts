@@ -16,8 +16,10 @@ export function report(desk: Desk, problem: Problem | null): void {
   problems.value = problem ? { ...others, [desk]: problem } : others;
 }
 
-export const asProblem = (error: unknown): Problem =>
-  error instanceof RequestFailed ? error.problem : unreachable(error instanceof Error ? error.message : String(error)).problem;
+export const asFailure = (error: unknown): RequestFailed =>
+  error instanceof RequestFailed ? error : unreachable(error instanceof Error ? error.message : String(error));
+
+export const asProblem = (error: unknown): Problem => asFailure(error).problem;
 
 const TAKEN_MS = 3000;
 

@@ -8,6 +8,7 @@ import { formatPlace } from "../units/coordinates";
 import { formatDuration } from "../units/quantities";
 import type { MissionSpec } from "../wire";
 import { draft } from "./draft";
+import { settledDraft } from "./drawing";
 import { askPreview, histogram, preview } from "./preview";
 
 function Histogram({ times }: { times: readonly number[] }) {
@@ -56,7 +57,7 @@ export function PreviewCard() {
           type="button"
           data-testid="preview-run"
           disabled={state?.running || !draft.value?.hasArea}
-          onClick={() => void askPreview(draft.peek()!.spec)}
+          onClick={() => void settledDraft().then((settled) => settled && askPreview(settled.spec))}
         >
           {t(state?.running ? "preview.running" : "preview.run")}
         </button>

@@ -30,11 +30,21 @@ async function unite(): Promise<void> {
 
 let uniting: Promise<void> = Promise.resolve();
 
-/** Until what was drawn last has become one with what was there: before that the area is still to change. */
-export const areaUnited = (): Promise<void> => uniting;
+/** What is put in or taken out while corners are moved would be undone by the next one that moves. */
+function endMoving(): void {
+  if (tool.peek() === "corners") tool.value = "none";
+}
+
+/** The draft, once the moving of corners has ended and parts that overlap have become one; null when the page was left. */
+export async function settledDraft(): Promise<Draft | null> {
+  endMoving();
+  await uniting;
+  return draft.peek();
+}
 
 /** Puts polygons into the draft: they replace the suggested area, or any when they are to, else they are added. */
 export function add(kind: What, polygons: readonly Rings[]): void {
+  endMoving();
   const now = draft.peek();
   if (!now || polygons.length === 0) return;
   const { area, flight } = now.spec;
@@ -50,6 +60,7 @@ export function add(kind: What, polygons: readonly Rings[]): void {
 }
 
 export function remove(kind: What, index = 0): void {
+  endMoving();
   const now = draft.peek();
   if (!now) return;
   if (kind === "area") update({ ...now, hasArea: false, suggested: false });
@@ -62,8 +73,10 @@ export function replace(kind: What, polygons: readonly Rings[]): void {
   const now = draft.peek();
   const joined = areaOf(polygons);
   if (!now || !joined) return;
-  if (kind === "area") update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
-  else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
+  if (kind === "area") {
+    update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
+    uniting = unite();
+  } else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
   else keepOff(now, polygons.map(zone));
 }
 

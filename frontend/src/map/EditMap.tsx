@@ -69,16 +69,12 @@ const ringsBack = (draw: TerraDraw): Rings[] =>
 
 /** Carries the chosen tool into Terra Draw, and what was drawn back into the draft. */
 function bindTools(draw: TerraDraw): () => void {
-  let moving = false;
-  const takeMoved = () => {
-    if (!moving) return;
-    moving = false;
-    const polygons = ringsBack(draw);
-    draw.clear();
-    replace(what.peek(), polygons);
-  };
+  const takeMoved = () => replace(what.peek(), ringsBack(draw));
   draw.on("finish", (id, context) => {
-    if (context.action !== "draw") return;
+    if (context.action !== "draw") {
+      takeMoved();
+      return;
+    }
     const drawn = draw.getSnapshotFeature(id);
     if (!drawn) return;
     add(what.peek(), [ringsOf(drawn)]);
@@ -88,19 +84,17 @@ function bindTools(draw: TerraDraw): () => void {
       tool.value = "none";
     });
   });
-  const stop = effect(() => {
+  return effect(() => {
     const chosen = tool.value;
-    takeMoved();
+    if (draw.getMode() === "select") {
+      takeMoved();
+      draw.clear();
+    }
     if (chosen === "corners") {
       draw.setMode("select");
       addRings(draw, polygonsOfKind(what.value));
-      moving = true;
     } else draw.setMode(chosen === "none" ? "static" : chosen);
   });
-  return () => {
-    takeMoved();
-    stop();
-  };
 }
 
 const FALLBACK_START: LonLat = [7.1, 50.73];
@@ -165,7 +159,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
       );
       const draw = makeDraw(map, colours);
       draw.start();
-      stops.push(bindTools(draw), () => draw.stop());
+      stops.push(() => draw.stop(), bindTools(draw));
       void addBasemap(map, theme === "indoor" ? "dark" : "light", "no-fly").catch(() => undefined);
       box.current?.setAttribute("data-ready", "true");
     });

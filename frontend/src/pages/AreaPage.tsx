@@ -5,7 +5,7 @@ import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { areaUnited, replaces } from "../edit/drawing";
+import { replaces, settledDraft } from "../edit/drawing";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
@@ -91,7 +91,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
                   class="primary"
                   data-testid="outlook-ask"
                   disabled={isAsking || !isReadable}
-                  onClick={() => void areaUnited().then(() => draft.peek() && askOutlook(id, draft.peek()!.spec))}
+                  onClick={() => void settledDraft().then((settled) => settled && askOutlook(id, settled.spec))}
                 >
                   {t(isAsking ? "area.asking" : "area.ask")}
                 </button>

@@ -1,11 +1,12 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { asProblem } from "../commands/send";
+import { asFailure } from "../commands/send";
 import { suggestedSpec } from "../commands/suggested";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
+import { settledDraft, tool } from "../edit/drawing";
 import { EmitterListField } from "../edit/EmitterListField";
 import { EMITTER, firstEmitter } from "../edit/emitter";
 import { FormField, TextField } from "../edit/FormField";
@@ -23,7 +24,7 @@ import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { localProblem, RequestFailed } from "../sources/problem";
 import { go, missionAddress, type Route } from "../state/route";
-import type { MissionSpec, Problem } from "../wire";
+import type { MissionSpec } from "../wire";
 import { EditMapArea } from "./EditMapArea";
 
 type EditRoute = Extract<Route, { page: "new" | "edit" }>;
@@ -172,7 +173,6 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
 export function EditPage({ route }: { route: EditRoute }) {
   const key = keyOf(route);
   const from = route.page === "new" ? route.from : null;
-  const [problem, setProblem] = useState<Problem | null>(null);
   const [failed, setFailed] = useState<RequestFailed | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
   const [saving, setSaving] = useState(false);
@@ -180,14 +180,14 @@ export function EditPage({ route }: { route: EditRoute }) {
   const loads = useRef(0);
 
   const load = () => {
-    setProblem(null);
+    setFailed(null);
     draft.value = null; // what is typed until it has come would be lost
     const mine = ++loads.current;
     specFor(route).then(
       ({ spec, suggested }) => {
         if (mine === loads.current) draft.value = { key, spec, hasArea: true, suggested, text: {} }; // kept from the first change on
       },
-      (error: unknown) => mine === loads.current && setProblem(asProblem(error)),
+      (error: unknown) => mine === loads.current && setFailed(asFailure(error)),
     );
   };
   useEffect(() => {
@@ -199,6 +199,7 @@ export function EditPage({ route }: { route: EditRoute }) {
     const stopCoverage = watchCoverage();
     return () => {
       loads.current += 1;
+      tool.value = "none"; // corners that were moved are kept
       draft.value = null; // the next page would show it until its own has come
       clearPreview();
       stopCoverage();
@@ -206,23 +207,18 @@ export function EditPage({ route }: { route: EditRoute }) {
   }, [key, from]);
 
   const save = async () => {
-    const now = draft.peek();
-    if (!now) return;
     setFailed(null);
-    setProblem(null);
-    const local = !now.hasArea ? t("edit.noArea") : Object.keys(now.text).length > 0 ? t("edit.invalid") : null;
-    if (local) {
-      setProblem(localProblem(t("menu.new"), local));
-      return;
-    }
     setSaving(true);
     try {
+      const now = await settledDraft();
+      if (now?.key !== key) return;
+      const local = !now.hasArea ? t("edit.noArea") : Object.keys(now.text).length > 0 ? t("edit.invalid") : null;
+      if (local) throw new RequestFailed(localProblem(t("menu.new"), local));
       const saved = route.page === "edit" ? await api.editMission(route.missionId, now.spec) : await api.draftMission(now.spec);
       forget(key);
       go(missionAddress(saved.mission_id));
     } catch (error) {
-      setProblem(asProblem(error));
-      if (error instanceof RequestFailed) setFailed(error);
+      setFailed(asFailure(error));
     } finally {
       setSaving(false);
     }
@@ -248,6 +244,7 @@ export function EditPage({ route }: { route: EditRoute }) {
                 type="button"
                 data-testid="discard"
                 onClick={() => {
+                  tool.value = "none";
                   forget(key);
                   setRestored(false);
                   load();
@@ -270,7 +267,7 @@ export function EditPage({ route }: { route: EditRoute }) {
           )}
         </div>
         <div class="panel edit-foot">
-          {problem && <ProblemBox problem={problem} testId="edit-problem" />}
+          {failed && <ProblemBox problem={failed.problem} testId="edit-problem" />}
           <div class="start-row">
             <a class="button" href={route.page === "edit" ? missionAddress(route.missionId) : "#/"}>
               {t("edit.cancel")}
