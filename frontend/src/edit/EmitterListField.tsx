@@ -1,19 +1,22 @@
 // Several emitters as a list to paste into. What is wrong is said line by line, and nothing is taken until all is right.
+import { useEffect, useState } from "preact/hooks";
 import { type MessageKey, t } from "../i18n";
 import { OrderButtons } from "../panels/OrderButtons";
 import { PlaceInOrder } from "../panels/PlaceInOrder";
 import { emitterName } from "../state/emitterName";
 import { importanceWords, inOrder, type Priorities, prioritiesOf } from "../state/importance";
 import type { EmitterSpec, MissionSpec } from "../wire";
-import { draft, update } from "./draft";
+import { draft, shownFields, type, update } from "./draft";
 import { EMITTER } from "./emitter";
 import { badLineWords, LIST, listOf, readList } from "./emitterList";
 
 /** What the list replaces: raw text of its first emitter's own fields. */
 const OWN = [`${EMITTER}.frequency_hz`, `${EMITTER}.label`];
 
-function take(text: string): void {
-  const now = draft.peek()!;
+/** The list as it is typed, of the draft that is on the page. */
+function take(text: string | undefined): void {
+  const now = draft.peek();
+  if (!now || text === undefined) return;
   const { emitters, bad } = readList(text, now.spec.emitters);
   const kept = Object.fromEntries(Object.entries(now.text).filter(([path]) => path !== LIST && !OWN.includes(path)));
   if (bad.length > 0 || emitters.length === 0) update({ ...now, text: { ...kept, [LIST]: text } });
@@ -54,9 +57,17 @@ function countWords({ emitters, sensor }: MissionSpec): MessageKey {
 
 export function EmitterListField() {
   const { spec, text } = draft.value!;
+  const [isTyped, setTyped] = useState(false);
   const raw = text[LIST];
-  const bad = raw === undefined ? [] : readList(raw, spec.emitters).bad;
-  const empty = raw !== undefined && raw.trim() === "";
+  const bad = raw === undefined || isTyped ? [] : readList(raw, spec.emitters).bad;
+  const empty = !isTyped && raw?.trim() === "";
+  useEffect(() => {
+    shownFields.add(LIST);
+    take(draft.peek()?.text[LIST]); // what was typed before a reload
+    return () => {
+      shownFields.delete(LIST);
+    };
+  }, []);
   const words = empty ? [t("edit.list.empty" satisfies MessageKey)] : bad.map(badLineWords);
   return (
     <div class="field emitter-list">
@@ -69,7 +80,14 @@ export function EmitterListField() {
         value={raw ?? listOf(spec.emitters)}
         aria-invalid={words.length > 0}
         aria-describedby="emitter-list-message"
-        onChange={(e) => take(e.currentTarget.value)}
+        onInput={(e) => {
+          setTyped(true);
+          type(LIST, e.currentTarget.value);
+        }}
+        onBlur={() => {
+          setTyped(false);
+          take(draft.peek()?.text[LIST]);
+        }}
       />
       <div id="emitter-list-message" class="emitter-list-said">
         {words.length === 0 && (

@@ -7,9 +7,10 @@ import { formatPlace } from "../units/coordinates";
 import { parsePlace } from "../units/parsePlace";
 import type { Place } from "../wire";
 import { bandMessage } from "./band";
-import { change, draft, type } from "./draft";
+import { change, draft } from "./draft";
 import { type ChoiceField, type Field, type NumberField, shownUnit, shownValue, typedNumber } from "./fields";
 import { get } from "./path";
+import { useTyped } from "./typed";
 
 interface Properties<F> {
   field: F;
@@ -35,10 +36,13 @@ const unitWords = (unit: string) => (unit === "times" || unit === "places" || un
 function NumberInput({ field, failed }: Properties<NumberField>) {
   const now = draft.value!;
   const { unit, scale } = shownUnit(field, settings.value.units);
-  const raw = now.text[field.path];
   const stored = get(now.spec, field.path);
   const id = idOf(field.path);
-  const message = raw !== undefined ? t("edit.notNumber") : wrong(field.path, failed);
+  const shown = typeof stored === "number" ? shownValue(stored, scale) : "";
+  const { input, isWrong } = useTyped(field.path, shown, typedNumber, (value) =>
+    change(field.path, Number((value * scale).toPrecision(12))),
+  );
+  const message = isWrong ? t("edit.notNumber") : wrong(field.path, failed);
   return (
     <div class="field">
       <label for={id}>{t(field.label)}</label>
@@ -47,17 +51,9 @@ function NumberInput({ field, failed }: Properties<NumberField>) {
           id={id}
           data-testid={id}
           inputMode="decimal"
-          value={raw ?? (typeof stored === "number" ? shownValue(stored, scale) : "")}
           aria-invalid={message !== null}
           aria-describedby={message ? `${id}-message` : undefined}
-          onChange={(e) => {
-            const value = typedNumber(e.currentTarget.value);
-            if (value === null) type(field.path, e.currentTarget.value);
-            else {
-              type(field.path, null);
-              change(field.path, Number((value * scale).toPrecision(12)));
-            }
-          }}
+          {...input}
         />
         <span class="unit">{unitWords(unit)}</span>
       </span>
@@ -125,28 +121,15 @@ export function TextField({ path, label, failed }: { path: string; label: string
 
 /** A place in any notation. */
 export function PlaceField({ path, label, failed }: { path: string; label: string; failed: RequestFailed | null }) {
-  const now = draft.value!;
   const id = idOf(path);
-  const raw = now.text[path];
-  const place = get(now.spec, path) as Place | undefined;
-  const message = raw !== undefined ? t("edit.notPlace") : (failed?.fieldMessage(path) ?? null);
+  const place = get(draft.value!.spec, path) as Place | undefined;
+  const shown = place ? formatPlace(place, settings.value.coordinates) : "";
+  const { input, isWrong } = useTyped(path, shown, parsePlace, (found) => change(path, found));
+  const message = isWrong ? t("edit.notPlace") : (failed?.fieldMessage(path) ?? null);
   return (
     <div class="field">
       <label for={id}>{label}</label>
-      <input
-        id={id}
-        data-testid={id}
-        value={raw ?? (place ? formatPlace(place, settings.value.coordinates) : "")}
-        aria-invalid={message !== null}
-        onChange={(e) => {
-          const found = parsePlace(e.currentTarget.value);
-          if (!found) type(path, e.currentTarget.value);
-          else {
-            type(path, null);
-            change(path, found);
-          }
-        }}
-      />
+      <input id={id} data-testid={id} aria-invalid={message !== null} {...input} />
       <Message id={id} text={message} />
     </div>
   );

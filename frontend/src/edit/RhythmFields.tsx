@@ -2,26 +2,26 @@
 import { type MessageKey, t } from "../i18n";
 import type { RequestFailed } from "../sources/problem";
 import type { EmitterSpec } from "../wire";
-import { draft, type, update } from "./draft";
+import { change, draft } from "./draft";
 import { EMITTER, firstEmitter } from "./emitter";
 import { Message } from "./FormField";
 import { typedNumber } from "./fields";
+import { useTyped } from "./typed";
 
 type Name = "pulse_period_s" | "pulse_width_s" | "pulse_jitter_s";
 
 function PulseNumber({ name, label, failed }: { name: Name; label: MessageKey; failed: RequestFailed | null }) {
-  const { spec, text } = draft.value!;
   const path = `${EMITTER}.${name}`;
-  const [id, raw] = [`field-${path.replaceAll(".", "-")}`, text[path]];
-  const message = raw !== undefined ? t("edit.notNumber") : (failed?.fieldMessage(path) ?? null);
-  const take = (words: string) => {
-    const value = typedNumber(words);
-    if (value === null) return type(path, words);
-    type(path, null);
-    const now = draft.peek()!;
-    const emitters = now.spec.emitters.map((emitter): EmitterSpec => ({ ...emitter, [name]: value }));
-    update({ ...now, spec: { ...now.spec, emitters } });
-  };
+  const id = `field-${path.replaceAll(".", "-")}`;
+  const { input, isWrong } = useTyped(path, String(firstEmitter(draft.value!.spec)[name]), typedNumber, (value) => {
+    const now = draft.peek();
+    if (now)
+      change(
+        "emitters",
+        now.spec.emitters.map((emitter): EmitterSpec => ({ ...emitter, [name]: value })),
+      );
+  });
+  const message = isWrong ? t("edit.notNumber") : (failed?.fieldMessage(path) ?? null);
   return (
     <div class="field">
       <label for={id}>{t(label)}</label>
@@ -30,10 +30,9 @@ function PulseNumber({ name, label, failed }: { name: Name; label: MessageKey; f
           id={id}
           data-testid={id}
           inputMode="decimal"
-          value={raw ?? String(firstEmitter(spec)[name])}
           aria-invalid={message !== null}
           aria-describedby={message ? `${id}-message` : undefined}
-          onChange={(e) => take(e.currentTarget.value)}
+          {...input}
         />
         <span class="unit">s</span>
       </span>

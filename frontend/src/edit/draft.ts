@@ -4,7 +4,7 @@ import type { MissionSpec } from "../wire";
 import { set } from "./path";
 
 export interface Draft {
-  /** "new", or the id of the mission that is edited. */
+  /** "new", "new:ID" of a mission that is used again, or the id of the one that is edited. */
   key: string;
   spec: MissionSpec;
   hasArea: boolean;
@@ -17,6 +17,12 @@ export interface Draft {
 const storageKey = (key: string) => `crossfix.draft.${key}`;
 
 export const draft = signal<Draft | null>(null);
+
+/** Paths of the fields that are on the page: what was typed into others is asked for no more. */
+export const shownFields = new Set<string>();
+
+/** Is there a field on the page whose text is not understood? */
+export const isUnread = ({ text }: Draft): boolean => Object.keys(text).some((path) => shownFields.has(path));
 
 /** null when there is none, or one of an older page. */
 export function storedDraft(key: string): Draft | null {
@@ -37,6 +43,11 @@ export function update(next: Draft): void {
 
 export function forget(key: string): void {
   localStorage.removeItem(storageKey(key));
+}
+
+/** Once the server has it; what was begun meanwhile in its place stays. */
+export function forgetSent(key: string, spec: MissionSpec): void {
+  if (JSON.stringify(storedDraft(key)?.spec) === JSON.stringify(spec)) forget(key);
 }
 
 export function change(path: string, value: unknown): void {
