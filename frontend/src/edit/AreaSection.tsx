@@ -5,13 +5,13 @@ import { reasonText, t } from "../i18n";
 import { problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import type { RequestFailed } from "../sources/problem";
-import { areaM2, cornerCount, cornersFromText, polygonsOf } from "../state/areas";
+import { areaM2, cornerCount, cornersFromText, polygonsOf, type Rings } from "../state/areas";
 import { settings } from "../state/settings";
 import { formatArea } from "../units/quantities";
 import type { Area } from "../wire";
 import { coverage } from "./coverage";
 import { change, draft } from "./draft";
-import { add, remove, replaces, tool, type What, what } from "./drawing";
+import { add, addRead, remove, replaces, tool, type What, what } from "./drawing";
 import { firstEmitter, PRIOR } from "./emitter";
 import { FormField, Message, PlaceField } from "./FormField";
 import type { NumberField } from "./fields";
@@ -19,19 +19,38 @@ import { NotAPlan, readPlan } from "./qgcPlan";
 
 const MARGIN: NumberField = { kind: "number", path: "flight.fence_margin_m", label: "edit.fence.marginValue", unit: "m", min: 0 };
 
-/** Reads a file into the draft; returns what to tell. Throws when it cannot be read. */
-async function importFile(file: File, kind: What): Promise<string[]> {
-  const text = await file.text();
-  if (/\.plan$/i.test(file.name)) {
-    const { inclusions, exclusions } = readPlan(text);
-    if (inclusions.length > 0) add(kind === "area" && !draft.peek()?.hasArea ? "area" : "fence", inclusions);
-    if (exclusions.length > 0) add("noFly", exclusions);
-    return [];
-  }
-  const imported = await api.importArea(text, file.name);
-  add(kind, polygonsOf(imported.area as Area));
-  return imported.notes.map(reasonText);
+interface ReadFile {
+  parts: readonly [What, Rings[]][];
+  told: string[];
 }
+
+/** Throws when it cannot be read. */
+async function readFile(file: File, kind: What): Promise<ReadFile> {
+  const text = await file.text();
+  if (!/\.plan$/i.test(file.name)) return readArea(text, file.name, kind);
+  const { inclusions, exclusions } = readPlan(text);
+  return {
+    parts: [
+      [kind === "area" && !draft.peek()?.hasArea ? "area" : "fence", inclusions],
+      ["noFly", exclusions],
+    ],
+    told: [],
+  };
+}
+
+async function readArea(text: string, name: string, kind: What): Promise<ReadFile> {
+  const { area, notes } = await api.importArea(text, name);
+  return { parts: [[kind, polygonsOf(area as Area)]], told: notes.map(reasonText) };
+}
+
+/** Puts what is read into the draft; returns what to tell. */
+const taken = (reading: Promise<ReadFile>, name: string): Promise<{ isRead: boolean; told: string[] }> =>
+  addRead(reading, ({ parts }) => {
+    for (const [kind, polygons] of parts) add(kind, polygons);
+  }).then(
+    ({ told }) => ({ isRead: true, told }),
+    (error: unknown) => ({ isRead: false, told: [importProblem(name, error)] }),
+  );
 
 const importProblem = (name: string, error: unknown): string => {
   const reason = error instanceof NotAPlan ? t(error.flaw) : problemWords(asProblem(error));
@@ -40,21 +59,17 @@ const importProblem = (name: string, error: unknown): string => {
 
 /** A dropped or chosen file goes into what is being drawn; a note says what was left out or wrong. */
 export async function takeFile(file: File, onTold: (lines: string[]) => void): Promise<void> {
-  onTold(await importFile(file, what.peek()).catch((error: unknown) => [importProblem(file.name, error)]));
+  onTold((await taken(readFile(file, what.peek()), file.name)).told);
 }
 
 function Paste({ onTold }: { onTold: (lines: string[]) => void }) {
   const [text, setText] = useState("");
   const use = () => {
     if (/^\s*[{[]/.test(text)) {
-      void api.importArea(text, "pasted.geojson").then(
-        (imported) => {
-          add(what.peek(), polygonsOf(imported.area as Area));
-          setText("");
-          onTold(imported.notes.map(reasonText));
-        },
-        (error: unknown) => onTold([importProblem("GeoJSON", error)]),
-      );
+      void taken(readArea(text, "pasted.geojson", what.peek()), "GeoJSON").then(({ isRead, told }) => {
+        if (isRead) setText("");
+        onTold(told);
+      });
       return;
     }
     const found = cornersFromText(text);

@@ -20,25 +20,49 @@ const keepOff = (now: Draft, zones: Area[]): void => update({ ...now, spec: set(
 export const replaces = signal(false);
 
 /** Parts that overlap become one: their ground is searched, and counted, once. The server knows how. */
-async function unite(): Promise<void> {
+async function unite(): Promise<boolean> {
   const before = draft.peek();
-  if (!before || polygonsOf(before.spec.area).length < 2) return;
+  if (!before || polygonsOf(before.spec.area).length < 2) return true;
   const united = await api.importArea(JSON.stringify(before.spec.area), "drawn.geojson").catch(() => null);
   const now = draft.peek();
   if (united && now?.spec.area === before.spec.area) update({ ...now, spec: { ...now.spec, area: united.area } });
+  return true;
 }
 
-let uniting: Promise<void> = Promise.resolve();
+/** Until files have been read and parts have become one. false: a file could not be read. */
+let settling: Promise<boolean> = Promise.resolve(true);
+
+/** Puts what is being read into the draft that is there now, unless another one is there by then. Fails as the reading. */
+export function addRead<T>(reading: Promise<T>, put: (found: T) => void): Promise<T> {
+  const key = draft.peek()?.key;
+  const added = reading.then((found) => {
+    if (draft.peek()?.key === key) put(found);
+    return found;
+  });
+  settling = added.then(
+    () => true,
+    () => {
+      settling = Promise.resolve(true);
+      return false;
+    },
+  );
+  return added;
+}
 
 /** What is put in or taken out while corners are moved would be undone by the next one that moves. */
 function endMoving(): void {
   if (tool.peek() === "corners") tool.value = "none";
 }
 
-/** The draft, once the moving of corners has ended and parts that overlap have become one; null when the page was left. */
+/** The draft, once corners are no longer moved, files are read and parts that overlap have become one. null: a file could
+ * not be read, or the page was left. */
 export async function settledDraft(): Promise<Draft | null> {
   endMoving();
-  await uniting;
+  let waited: typeof settling;
+  do {
+    waited = settling;
+    if (!(await waited)) return null;
+  } while (waited !== settling);
   return draft.peek();
 }
 
@@ -51,7 +75,7 @@ export function add(kind: What, polygons: readonly Rings[]): void {
   if (kind === "area") {
     const joined = areaOf(now.hasArea && !now.suggested && !replaces.peek() ? [...polygonsOf(area), ...polygons] : polygons)!;
     update({ ...now, hasArea: true, suggested: false, spec: { ...now.spec, area: joined } });
-    uniting = unite();
+    settling = unite();
   } else if (kind === "fence") {
     update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
   } else {
@@ -75,7 +99,7 @@ export function replace(kind: What, polygons: readonly Rings[]): void {
   if (!now || !joined) return;
   if (kind === "area") {
     update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
-    uniting = unite();
+    settling = unite();
   } else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
   else keepOff(now, polygons.map(zone));
 }

@@ -1,8 +1,9 @@
 // What to expect of the mission before take-off, asked of the planner.
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { asProblem } from "../commands/send";
 import * as api from "../sources/api";
 import type { MissionSpec, PlanChosen, Preview, Problem } from "../wire";
+import { draft } from "./draft";
 
 export interface PreviewState {
   running: boolean;
@@ -13,6 +14,17 @@ export interface PreviewState {
 export const preview = signal<PreviewState | null>(null);
 
 let asking: AbortController | null = null;
+let asked = "";
+
+const unnamed = (spec: MissionSpec): string => JSON.stringify({ ...spec, name: "" });
+
+/** What was said of a mission holds for that one only. */
+export function forgetPreviewOfOthers(): () => void {
+  return effect(() => {
+    const now = draft.value;
+    if (preview.peek() && (!now || unnamed(now.spec) !== asked)) clearPreview();
+  });
+}
 
 export function clearPreview(): void {
   asking?.abort();
@@ -22,6 +34,7 @@ export function clearPreview(): void {
 export async function askPreview(spec: MissionSpec): Promise<void> {
   asking?.abort();
   asking = new AbortController();
+  asked = unnamed(spec);
   const { signal: aborted } = asking;
   preview.value = { running: true, found: null, problem: null };
   try {

@@ -9,7 +9,7 @@ import { add, polygonsOfKind, replace, tool, what } from "../edit/drawing";
 import { outlook } from "../edit/outlook";
 import { firstPlan, preview } from "../edit/preview";
 import { t } from "../i18n";
-import { type Rings, ringsApart, ringsTogether } from "../state/areas";
+import { type Ring, type Rings, ringsApart, ringsTogether } from "../state/areas";
 import type { At } from "../state/emitter";
 import { boundsOf, lonLat } from "../state/geometry";
 import { settings } from "../state/settings";
@@ -35,6 +35,7 @@ function makeDraw(map: GlMap, colours: Palette): TerraDraw {
       new TerraDrawPolygonMode({ styles: { ...styles, closingPointColor: accent, closingPointWidth: 7 }, pointerDistance: 20 }),
       new TerraDrawRectangleMode({ styles }),
       new TerraDrawSelectMode({
+        keyEvents: null,
         flags: { polygon: { feature: { draggable: true, coordinates: { midpoints: true, draggable: true, deletable: true } } } },
         styles: { selectedPolygonColor: accent, selectedPolygonOutlineColor: accent, selectionPointWidth: 8, selectionPointColor: accent },
       }),
@@ -45,31 +46,35 @@ function makeDraw(map: GlMap, colours: Palette): TerraDraw {
 const ringsOf = (feature: GeoJSONStoreFeatures): Rings =>
   feature.geometry.type === "Polygon" ? (feature.geometry.coordinates as Rings) : [];
 
-/** Terra Draw knows no holes: every ring is a polygon of its own while its corners are moved. */
-function addRings(draw: TerraDraw, polygons: readonly Rings[]): void {
+/** Terra Draw knows no holes: every ring is a polygon of its own while its corners are moved. It takes nine decimals, a
+ * tenth of a millimetre. Returns the rings that it does not take. */
+function addRings(draw: TerraDraw, polygons: readonly Rings[]): Ring[] {
   const rings = ringsApart(polygons);
   const added = draw.addFeatures(
     rings.map(({ polygon, ring, corners }) => ({
       type: "Feature",
       properties: { mode: "polygon", polygon, ring },
-      geometry: { type: "Polygon", coordinates: [corners] },
+      geometry: { type: "Polygon", coordinates: [corners.map((corner) => corner.map((degrees) => Number(degrees.toFixed(9))))] },
     })),
   );
-  const first = added[0]?.id;
+  const first = added.find(({ valid }) => valid)?.id;
   if (first !== undefined) draw.selectFeature(first);
+  return rings.filter((_, i) => !added[i]!.valid);
 }
 
-const ringsBack = (draw: TerraDraw): Rings[] =>
-  ringsTogether(
-    draw
+const ringsBack = (draw: TerraDraw, others: readonly Ring[]): Rings[] =>
+  ringsTogether([
+    ...others,
+    ...draw
       .getSnapshot()
       .filter((f) => f.properties.mode === "polygon" && typeof f.properties.ring === "number")
       .map((f) => ({ polygon: f.properties.polygon as number, ring: f.properties.ring as number, corners: ringsOf(f)[0] ?? [] })),
-  );
+  ]);
 
 /** Carries the chosen tool into Terra Draw, and what was drawn back into the draft. */
 function bindTools(draw: TerraDraw): () => void {
-  const takeMoved = () => replace(what.peek(), ringsBack(draw));
+  let others: Ring[] = [];
+  const takeMoved = () => replace(what.peek(), ringsBack(draw, others));
   draw.on("finish", (id, context) => {
     if (context.action !== "draw") {
       takeMoved();
@@ -87,12 +92,11 @@ function bindTools(draw: TerraDraw): () => void {
   return effect(() => {
     const chosen = tool.value;
     if (draw.getMode() === "select") {
-      takeMoved();
       draw.clear();
     }
     if (chosen === "corners") {
       draw.setMode("select");
-      addRings(draw, polygonsOfKind(what.value));
+      others = addRings(draw, polygonsOfKind(what.value));
     } else draw.setMode(chosen === "none" ? "static" : chosen);
   });
 }

@@ -5,7 +5,7 @@ import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { replaces, settledDraft } from "../edit/drawing";
+import { replaces, settledDraft, tool } from "../edit/drawing";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
@@ -24,19 +24,25 @@ export function AreaPage({ route }: { route: AreaRoute }) {
   const [problem, setProblem] = useState<Problem | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
 
-  const load = () => {
-    draft.value = null;
-    api.mission(id).then(
-      ({ spec }) => (draft.value = { key, spec: spec as MissionSpec, hasArea: true, suggested: false, text: {} }),
-      (error: unknown) => setProblem(asProblem(error)),
-    );
-  };
   useEffect(() => {
+    let isLeft = false;
     replaces.value = false;
+    draft.value = null;
     const kept = storedDraft(key);
     if (kept) update(kept);
-    else load();
-    const stops = [watchCoverage(), forgetOutlookOfOthers(), clearOutlook];
+    else
+      api.mission(id).then(
+        ({ spec }) => {
+          if (!isLeft) draft.value = { key, spec: spec as MissionSpec, hasArea: true, suggested: false, text: {} };
+        },
+        (error: unknown) => setProblem(asProblem(error)),
+      );
+    const leave = () => {
+      isLeft = true;
+      tool.value = "none"; // corners that were moved are kept
+      draft.value = null;
+    };
+    const stops = [leave, watchCoverage(), forgetOutlookOfOthers(), clearOutlook];
     return () => {
       for (const stop of stops) stop();
     };

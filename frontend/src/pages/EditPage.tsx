@@ -5,7 +5,7 @@ import { suggestedSpec } from "../commands/suggested";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
-import { draft, forget, storedDraft, update } from "../edit/draft";
+import { draft, forget, forgetSent, isUnread, storedDraft, update } from "../edit/draft";
 import { settledDraft, tool } from "../edit/drawing";
 import { EmitterListField } from "../edit/EmitterListField";
 import { EMITTER, firstEmitter } from "../edit/emitter";
@@ -16,7 +16,7 @@ import { MovementField } from "../edit/MovementField";
 import { PreviewCard } from "../edit/PreviewCard";
 import { ProfileRow } from "../edit/ProfileRow";
 import { type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
-import { clearPreview } from "../edit/preview";
+import { clearPreview, forgetPreviewOfOthers } from "../edit/preview";
 import { ReceiverBandField } from "../edit/ReceiverBandField";
 import { RhythmFields } from "../edit/RhythmFields";
 import { t } from "../i18n";
@@ -29,7 +29,7 @@ import { EditMapArea } from "./EditMapArea";
 
 type EditRoute = Extract<Route, { page: "new" | "edit" }>;
 
-const keyOf = (route: EditRoute) => (route.page === "edit" ? route.missionId : "new");
+const keyOf = (route: EditRoute) => (route.page === "edit" ? route.missionId : route.from ? `new:${route.from}` : "new");
 
 async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested: boolean }> {
   if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, suggested: false };
@@ -192,31 +192,33 @@ export function EditPage({ route }: { route: EditRoute }) {
   };
   useEffect(() => {
     clearPreview();
-    const kept = from === null ? storedDraft(key) : null;
+    const kept = storedDraft(key);
     setRestored(kept !== null);
     if (kept) update(kept);
     else load();
-    const stopCoverage = watchCoverage();
+    const stops = [watchCoverage(), forgetPreviewOfOthers()];
     return () => {
       loads.current += 1;
       tool.value = "none"; // corners that were moved are kept
       draft.value = null; // the next page would show it until its own has come
       clearPreview();
-      stopCoverage();
+      for (const stop of stops) stop();
     };
   }, [key, from]);
 
   const save = async () => {
+    const here = loads.current;
     setFailed(null);
     setSaving(true);
     try {
       const now = await settledDraft();
-      if (now?.key !== key) return;
-      const local = !now.hasArea ? t("edit.noArea") : Object.keys(now.text).length > 0 ? t("edit.invalid") : null;
+      if (!now || here !== loads.current) return;
+      const local =
+        tool.peek() !== "none" ? t("edit.area.drawing") : !now.hasArea ? t("edit.noArea") : isUnread(now) ? t("edit.invalid") : null;
       if (local) throw new RequestFailed(localProblem(t("menu.new"), local));
       const saved = route.page === "edit" ? await api.editMission(route.missionId, now.spec) : await api.draftMission(now.spec);
-      forget(key);
-      go(missionAddress(saved.mission_id));
+      forgetSent(key, now.spec);
+      if (here === loads.current) go(missionAddress(saved.mission_id));
     } catch (error) {
       setFailed(asFailure(error));
     } finally {
@@ -226,7 +228,7 @@ export function EditPage({ route }: { route: EditRoute }) {
 
   const now = draft.value?.key === key ? draft.value : null;
   return (
-    <div class="edit" data-testid="edit-page">
+    <div class="edit" data-testid="edit-page" inert={saving}>
       <EditMapArea onTold={setTold} />
       <form
         class="side"

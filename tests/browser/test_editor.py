@@ -1,0 +1,149 @@
+"""What is typed and drawn in the editor is what is saved, whatever else happens meanwhile."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Route, expect
+from screen import Screen
+from served import Server
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
+
+MEADOW = "50.6234 7.2030\n50.6234 7.2060\n50.6250 7.2060\n50.6250 7.2030"
+IN_SECONDS = "50°37′31.1″ N 7°12′13.1″ E\n50°37′31.1″ N 7°12′15.1″ E\n50°37′33.1″ N 7°12′15.1″ E"
+ALTITUDE = "field-flight-altitude_relative_m"
+
+
+@pytest.fixture
+def editor(screen: Screen) -> Screen:
+    screen.go("#/new")
+    screen.map_ready("edit-map")
+    expect(screen.part("area-size")).to_have_attribute("data-suggested", "true")
+    return screen
+
+
+def paste(editor: Screen, corners: str) -> None:
+    if not editor.part("paste-area").is_visible():
+        editor.page.get_by_text("Paste GeoJSON or corner").click()
+    editor.part("paste-area").fill(corners)
+    editor.part("paste-apply").click()
+
+
+def spec_of(server: Server, editor: Screen) -> dict:
+    expect(editor.part("preflight")).to_be_visible()
+    return server.get(f"/api/missions/{editor.mission_id}")["spec"]
+
+
+def test_no_fly_areas_outlast_the_moving_of_corners(server: Server, editor: Screen) -> None:
+    editor.part("draw-what").select_option("noFly")
+    paste(editor, IN_SECONDS)
+    paste(editor, MEADOW)
+    editor.part("draw-corners").click()
+    expect(editor.part("draw-corners")).to_have_attribute("aria-pressed", "true")
+    editor.part("save").click()
+    assert [len(zone["coordinates"][0]) for zone in spec_of(server, editor)["flight"]["no_fly"]] == [4, 5]
+
+
+def test_a_polygon_that_is_not_closed_is_not_forgotten(editor: Screen) -> None:
+    editor.part("draw-polygon").click()
+    for right, down in ((0.3, 0.3), (0.6, 0.3), (0.6, 0.6)):
+        editor.page.mouse.click(*editor.map_point(right, down, "edit-map"))
+    editor.part("save").click()
+    expect(editor.part("edit-problem")).to_contain_text("press Enter to finish")
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "true")
+    editor.page.mouse.click(*editor.map_point(0.3, 0.3, "edit-map"))
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "false")
+
+
+def test_saving_waits_for_a_file_that_is_being_read(server: Server, editor: Screen, tmp_path: Path) -> None:
+    held: list[Route] = []
+    editor.page.route("**/api/areas", lambda route: held.append(route))
+    ring = [[7.2030, 50.6234], [7.2060, 50.6234], [7.2060, 50.6250], [7.2030, 50.6234]]
+    file = tmp_path / "meadow.geojson"
+    file.write_text(json.dumps({"type": "Polygon", "coordinates": [ring]}))
+    with editor.page.expect_request("**/api/areas"):
+        editor.part("import-file").set_input_files(file)
+    editor.part("save").click()
+    expect(editor.part("save")).to_be_disabled()
+    for route in held:
+        route.continue_()
+    assert len(spec_of(server, editor)["area"]["coordinates"][0]) == 4
+
+
+def test_a_file_that_cannot_be_read_keeps_the_mission_from_being_saved(editor: Screen, tmp_path: Path) -> None:
+    held: list[Route] = []
+    editor.page.route("**/api/areas", lambda route: held.append(route))
+    file = tmp_path / "meadow.geojson"
+    file.write_text("buy milk")
+    with editor.page.expect_request("**/api/areas"):
+        editor.part("import-file").set_input_files(file)
+    editor.part("save").click()
+    for route in held:
+        route.continue_()
+    expect(editor.part("area-message")).to_contain_text("meadow.geojson")
+    expect(editor.part("save")).to_be_enabled()
+    assert editor.page.url.endswith("#/new")
+
+
+def test_a_mission_used_again_leaves_a_new_one_alone(server: Server, editor: Screen) -> None:
+    again = server.draft()
+    editor.part("field-name").fill("Half typed")
+    editor.go(f"#/new/{again}")
+    expect(editor.part("field-name")).not_to_have_value("Half typed")
+    editor.part("field-name").fill("The same, further north")
+    editor.page.reload()
+    expect(editor.part("field-name")).to_have_value("The same, further north")
+    editor.go("#/new")
+    expect(editor.part("field-name")).to_have_value("Half typed")
+
+
+def test_a_number_being_typed_outlasts_an_answer_and_a_reload(editor: Screen) -> None:
+    held: list[Route] = []
+    editor.page.route("**/api/areas", lambda route: held.append(route))
+    with editor.page.expect_request("**/api/areas"):
+        paste(editor, '{"type": "Polygon", "coordinates": [[[7.203, 50.6234], [7.206, 50.6234], [7.206, 50.625]]]}')
+    altitude = editor.part(ALTITUDE)
+    altitude.fill("")
+    altitude.press_sequentially("7")
+    held[0].continue_()
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "false")
+    altitude.press_sequentially("5")
+    expect(altitude).to_have_value("75")
+    editor.page.reload()
+    expect(altitude).to_have_value("75")
+    altitude.fill("high")
+    altitude.blur()
+    expect(altitude).to_have_attribute("aria-invalid", "true")
+
+
+def test_what_cannot_be_read_in_a_field_that_is_gone_is_asked_for_no_more(server: Server, editor: Screen) -> None:
+    editor.part("field-emitters-0-kind").select_option("pulsed")
+    list_of = editor.part("emitter-list")
+    list_of.fill("150.1 lynx\nhigh up")
+    list_of.blur()
+    expect(editor.part("emitter-list-bad")).to_be_visible()
+    editor.page.reload()
+    expect(list_of).to_have_value("150.1 lynx\nhigh up")
+    editor.part("field-emitters-0-kind").select_option("continuous")
+    expect(list_of).to_have_count(0)
+    editor.part("save").click()
+    assert len(spec_of(server, editor)["emitters"]) == 1
+
+
+def test_a_mission_saved_late_does_not_lead_away_from_the_next(server: Server, editor: Screen) -> None:
+    held: list[Route] = []
+    editor.page.route("**/api/missions", lambda route: held.append(route))
+    editor.part("field-name").fill("First")
+    with editor.page.expect_request("**/api/missions"):
+        editor.part("save").click()
+    editor.go("#/maps")
+    editor.go("#/new")
+    editor.part("field-name").fill("Second")
+    with editor.page.expect_response("**/api/missions"):
+        held[0].continue_()
+    assert "First" in [mission["name"] for mission in server.get("/api/missions")["missions"]]
+    editor.page.reload()
+    expect(editor.part("field-name")).to_have_value("Second")
