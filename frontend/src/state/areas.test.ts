@@ -53,6 +53,18 @@ describe("the margin around an area", () => {
   it("is nothing without a margin", () => {
     expect(marginOutline(area, 0)).toEqual([]);
   });
+
+  it("is worked out again only for another area or margin", () => {
+    const before = marginOutline(area, 60);
+    expect(marginOutline(area, 60)).toBe(before);
+    expect(marginOutline(area, 61)).not.toBe(before);
+    expect(marginOutline({ ...area }, 60)).not.toBe(before);
+  });
+
+  it("takes bounded steps along the edges of an area across 180 degrees", () => {
+    const across = closeRing([[179.99, -17] as LonLat, [-179.99, -17], [-179.99, -17.01], [179.99, -17.01]]);
+    expect(marginOutline(areaOf([[across]])!, 60).flat().length).toBeLessThan(4000);
+  });
 });
 
 describe("corners that were typed", () => {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LonLat } from "../wire/beliefFrame";
-import { bearingDeg, circle, destination, distanceM, extent, metresPerDegree, ringAreaM2, wedge } from "./geometry";
+import { bearingDeg, boundsOf, circle, destination, distanceM, extent, metresPerDegree, ringAreaM2, wedge } from "./geometry";
 
 const places: LonLat[] = [
   [7.2, 50.62],
@@ -82,4 +82,9 @@ it("finds the same reach as asking every pair of corners, of any shape", () => {
 it("measures a region of twenty thousand corners", () => {
   const around = circle([7.2, 50.62], 400, 20_000);
   expect(extent(around).metres).toBeCloseTo(800, 1);
+});
+
+it("bounds more points than a call takes arguments", () => {
+  const points = Array.from({ length: 500_000 }, (_, i): LonLat => [i / 1e4, -i / 1e5]);
+  expect(boundsOf(points)).toEqual([0, -4.99999, 49.9999, -0]);
 });

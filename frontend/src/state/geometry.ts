@@ -93,9 +93,14 @@ export function wedge(apex: LonLat, bearing: number, halfWidthDeg: number, lengt
 /** [west, south, east, north] of a set of points; null when there is none. */
 export function boundsOf(points: readonly LonLat[]): [number, number, number, number] | null {
   if (points.length === 0) return null;
-  const lons = points.map((p) => p[0]);
-  const lats = points.map((p) => p[1]);
-  return [Math.min(...lons), Math.min(...lats), Math.max(...lons), Math.max(...lats)];
+  let [west, south, east, north] = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [lon, lat] of points) {
+    west = Math.min(west, lon);
+    south = Math.min(south, lat);
+    east = Math.max(east, lon);
+    north = Math.max(north, lat);
+  }
+  return [west, south, east, north];
 }
 
 /** Area of a ring in m^2 (shoelace on the tangent plane in its middle), without sign: the same from whichever corner. */
