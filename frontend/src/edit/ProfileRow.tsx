@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { t } from "../i18n";
 import { draft, update } from "./draft";
-import { profileOf, profiles, removeProfile, saveProfile, takeBack, withProfile } from "./profiles";
+import { profileOf, profiles, removeProfile, saveProfile, takeBack, textBeside, withProfile } from "./profiles";
 
 export function ProfileRow() {
   const [name, setName] = useState("");
@@ -11,7 +11,11 @@ export function ProfileRow() {
     const now = draft.peek();
     const profile = known.find((p) => p.name === chosen);
     setName(chosen);
-    if (now && profile) update({ ...now, spec: withProfile(now.spec, profile), text: {} });
+    if (now && profile) update({ ...now, spec: withProfile(now.spec, profile), text: textBeside(now.text, profile) });
+  };
+  const save = () => {
+    const now = draft.peek();
+    if (now && name.trim()) saveProfile(profileOf(now.spec, name.trim()));
   };
   return (
     <>
@@ -38,13 +42,13 @@ export function ProfileRow() {
             data-testid="profile-name"
             value={name}
             onInput={(e) => setName(e.currentTarget.value)}
+            onKeyDown={(e) => {
+              if (e.key !== "Enter") return;
+              e.preventDefault(); // would save the mission
+              save();
+            }}
           />
-          <button
-            type="button"
-            data-testid="profile-save"
-            disabled={name.trim() === ""}
-            onClick={() => draft.peek() && saveProfile(profileOf(draft.peek()!.spec, name.trim()))}
-          >
+          <button type="button" data-testid="profile-save" disabled={name.trim() === ""} onClick={save}>
             {t("edit.profile.save")}
           </button>
           {(known.find((p) => p.name === name)?.history?.length ?? 0) > 0 && (

@@ -2,7 +2,18 @@
 import { expect, it } from "vitest";
 import { someSpec } from "../wire/examples";
 import { set } from "./path";
-import { learned, learnInto, profileOf, profiles, readProfiles, removeProfile, saveProfile, takeBack, withProfile } from "./profiles";
+import {
+  learned,
+  learnInto,
+  profileOf,
+  profiles,
+  readProfiles,
+  removeProfile,
+  saveProfile,
+  takeBack,
+  textBeside,
+  withProfile,
+} from "./profiles";
 
 it("brings the equipment's values back and leaves the search alone", () => {
   const flown = set(set(someSpec(), "sensor.sigma_deg", 3), "flight.speed_m_s", 12);
@@ -21,6 +32,24 @@ it("keeps one profile a name, in the browser's storage", () => {
   expect(readProfiles(localStorage.getItem("crossfix.profiles"))).toEqual(profiles.value);
   removeProfile("quad");
   expect(profiles.value).toEqual([]);
+});
+
+it("keeps what another tab saved meanwhile", () => {
+  const key = "crossfix.profiles";
+  saveProfile(profileOf(someSpec(), "quad"));
+  localStorage.setItem(key, JSON.stringify([...profiles.value, profileOf(someSpec(), "plane")]));
+  saveProfile(profileOf(someSpec(), "heli"));
+  expect(profiles.value.map((p) => p.name)).toEqual(["heli", "plane", "quad"]);
+  localStorage.setItem(key, JSON.stringify([...profiles.value, profileOf(someSpec(), "rover")]));
+  for (const name of ["heli", "plane", "quad"]) removeProfile(name);
+  expect(profiles.value.map((p) => p.name)).toEqual(["rover"]);
+  removeProfile("rover");
+});
+
+it("takes the place of what was typed in its own fields only", () => {
+  const left = { emitters: "15o.3 typo", "flight.fence_margin_m": "wide" };
+  const set = { "flight.speed_m_s": "fast", "sensor.sigma_deg": "x", "planner.motion.turn_rate_deg_s": "?" };
+  expect(textBeside({ ...left, ...set }, profileOf(someSpec(), "quad"))).toEqual(left);
 });
 
 it("bears a storage that holds something else", () => {

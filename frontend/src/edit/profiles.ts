@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import type { Suggested } from "../sources/libraryApi";
 import type { MissionSpec } from "../wire";
+import { get } from "./path";
 
 export interface Profile {
   name: string;
@@ -49,7 +50,10 @@ export function readProfiles(stored: string | null): Profile[] {
   }
 }
 
-export const profiles = signal<readonly Profile[]>(readProfiles(localStorage.getItem(KEY)));
+/** Another tab may have saved one meanwhile. */
+const stored = () => readProfiles(localStorage.getItem(KEY));
+
+export const profiles = signal<readonly Profile[]>(stored());
 
 function keep(next: readonly Profile[]): void {
   profiles.value = next;
@@ -73,6 +77,12 @@ export const withProfile = (spec: MissionSpec, { sensor, motion, flight }: Profi
   flight: { ...spec.flight, ...flight },
 });
 
+/** Raw text of the fields that a profile leaves alone. */
+export const textBeside = (text: Record<string, string>, profile: Profile): Record<string, string> =>
+  Object.fromEntries(
+    Object.entries(text).filter(([path]) => !/^(sensor|planner\.motion)\./.test(path) && get(profile, path) === undefined),
+  );
+
 /** With what checked flights suggest. Pure: the profile after it, its values of before kept in its history. The offset is
  * the whole of it, so that taking it over twice is taking it over once. */
 export function learned(profile: Profile, suggested: Suggested, at: string): Profile {
@@ -87,23 +97,24 @@ export function learned(profile: Profile, suggested: Suggested, at: string): Pro
 }
 
 export function learnInto(name: string, suggested: Suggested): void {
-  const profile = profiles.peek().find((p) => p.name === name);
+  const profile = stored().find((p) => p.name === name);
   if (profile) saveProfile(learned(profile, suggested, new Date().toISOString()));
 }
 
 /** As it was before the last taking over; the change itself is forgotten. */
 export function takeBack(name: string): void {
-  const profile = profiles.peek().find((p) => p.name === name);
+  const profile = stored().find((p) => p.name === name);
   const [before, ...history] = profile?.history ?? [];
   if (profile && before) saveProfile({ ...profile, sensor: before.sensor, motion: before.motion, history });
 }
 
 /** A profile of the same name is replaced; its history goes on. */
 export function saveProfile(saved: Profile): void {
-  const profile = { ...saved, history: saved.history ?? profiles.peek().find((p) => p.name === saved.name)?.history ?? [] };
-  keep([...profiles.peek().filter((p) => p.name !== profile.name), profile].toSorted((a, b) => a.name.localeCompare(b.name)));
+  const known = stored();
+  const profile = { ...saved, history: saved.history ?? known.find((p) => p.name === saved.name)?.history ?? [] };
+  keep([...known.filter((p) => p.name !== profile.name), profile].toSorted((a, b) => a.name.localeCompare(b.name)));
 }
 
 export function removeProfile(name: string): void {
-  keep(profiles.peek().filter((p) => p.name !== name));
+  keep(stored().filter((p) => p.name !== name));
 }
