@@ -13,3 +13,11 @@ it.each(presetNames)("%s is known again by its values, and no longer once one of
   ])
     expect(presetOf({ ...spec, sensor: { ...sensor, ...changed } })).toBeNull();
 });
+
+it.each(presetNames)("%s leaves the frequencies and names of a list as they are", (name) => {
+  const [first] = someSpec().emitters;
+  const emitters = [first!, { ...first!, emitter_id: "other", frequency_hz: 150_250_000, label: "lynx" }];
+  const spec = withPreset({ ...someSpec(), emitters }, name);
+  expect(spec.emitters).toEqual(emitters.map((one) => ({ ...one, kind: spec.emitters[0]!.kind })));
+  expect(presetOf(spec)).toBe(name);
+});
