@@ -1,7 +1,8 @@
 import { expect, it } from "vitest";
+import { localProblem, RequestFailed } from "../sources/problem";
 import { locale } from "../units/locale";
 import type { MissionSpec } from "../wire";
-import { someSpec } from "../wire/examples";
+import { someReason, someSpec } from "../wire/examples";
 import { EMITTER, firstEmitter, PRIOR } from "./emitter";
 import { sections, shownUnit, shownValue, typedNumber } from "./fields";
 import { get, set } from "./path";
@@ -9,8 +10,8 @@ import { presetOf, withPreset } from "./presets";
 
 it("every field of the form exists in the specification, so none edits nothing", () => {
   const paths = sections.flatMap((s) => s.fields.map((field) => field.path));
-  const ofEmitter = ["label", "frequency_hz", "kind", "prior"].map((name) => `${EMITTER}.${name}`);
-  for (const path of [...paths, ...ofEmitter]) expect(get(someSpec(), path), path).not.toBeUndefined();
+  const ofEmitter = ["label", "frequency_hz", "kind"].map((name) => `${EMITTER}.${name}`);
+  for (const path of [...paths, ...ofEmitter, PRIOR]) expect(get(someSpec(), path), path).not.toBeUndefined();
 });
 
 const asked = (spec: MissionSpec) =>
@@ -71,11 +72,22 @@ it("a field of the emitter sets it in its list, and leaves the other emitters al
   expect(get(changed, `${EMITTER}.frequency_hz`)).toBe(1e8);
   expect(changed.emitters[1]).toBe(spec.emitters[1]);
   expect(spec.emitters[0]).toBe(first);
-  expect(set(changed, `${PRIOR}.kind`, "ring").emitters[0]).toEqual({
-    ...first,
-    frequency_hz: 1e8,
-    prior: { ...first!.prior, kind: "ring" },
-  });
+});
+
+it("what is known beforehand is set for all emitters alike, and shown as the first one's", () => {
+  const [first] = someSpec().emitters;
+  const ring = { kind: "ring" as const, centre: { lat: 50, lon: 7 }, inner_m: 30, outer_m: 300 };
+  const others = [{ ...first!, emitter_id: "other", frequency_hz: 1e8, prior: ring }];
+  const spec = set({ ...someSpec(), emitters: [first!, ...others] }, PRIOR, ring);
+  const changed = set(spec, `${PRIOR}.outer_m`, 200);
+  const prior = { ...ring, outer_m: 200 };
+  expect(changed.emitters).toEqual([
+    { ...first, prior },
+    { ...others[0], prior },
+  ]);
+  expect(get(changed, `${PRIOR}.outer_m`)).toBe(200);
+  const errors = [{ field: "spec.emitters.0.prior.outer_m", reason: someReason }];
+  expect(new RequestFailed({ ...localProblem("", ""), errors }).fieldMessage(`${PRIOR}.outer_m`)).not.toBeNull();
 });
 
 it("a preset changes the first emitter and is found again", () => {

@@ -8,7 +8,8 @@ export class RequestFailed extends Error {
   }
   /** The message that belongs to one field, by its path ("spec.sensor.sigma_deg" or its tail). */
   fieldMessage(path: string): string | null {
-    const found = this.problem.errors.find((e) => e.field === path || e.field.endsWith(`.${path}`));
+    const asked = path.replace(".all.", ".0.");
+    const found = this.problem.errors.find((e) => e.field === asked || e.field.endsWith(`.${asked}`));
     return found ? reasonText(found.reason) : null;
   }
 }
