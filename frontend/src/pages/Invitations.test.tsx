@@ -24,7 +24,7 @@ it("shows the other links on when one invitation is taken back: no link is shown
   for (const id of ids) vi.mocked(access.invite).mockResolvedValueOnce({ invitation: one(id), link: `https://x/#/join/${id}`, qr: "" });
   vi.mocked(access.takeBackInvitation).mockResolvedValue(undefined);
   const attempt = (doing: Promise<unknown>) => void doing;
-  act(() => render(<Invitations list={ids.map(one)} attempt={attempt} />, document.body));
+  act(() => render(<Invitations list={ids.map(one)} sending={false} attempt={attempt} />, document.body));
   const count = document.querySelectorAll("select")[1]!;
   act(() => {
     count.value = "2";

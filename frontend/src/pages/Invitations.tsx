@@ -26,7 +26,13 @@ function Made({ made }: { made: access.MadeInvitation }) {
   );
 }
 
-export function Invitations({ list, attempt }: { list: access.Invitation[]; attempt: Try }) {
+interface Properties {
+  list: access.Invitation[];
+  sending: boolean;
+  attempt: Try;
+}
+
+export function Invitations({ list, sending, attempt }: Properties) {
   const [role, setRole] = useState<access.Role>("operator");
   const [admin, setAdmin] = useState(false);
   const [hours, setHours] = useState<number>(24);
@@ -81,7 +87,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
             <input type="checkbox" checked={admin} onChange={(e) => setAdmin(e.currentTarget.checked)} />
             {t("people.admin")}
           </label>
-          <button type="button" class="primary" data-testid="invite" onClick={() => attempt(makeAll())}>
+          <button type="button" class="primary" data-testid="invite" disabled={sending} onClick={() => attempt(makeAll())}>
             {t("people.invite.submit")}
           </button>
         </div>

@@ -244,6 +244,12 @@ function Place({ missions }: { missions: readonly MissionSummary[] }) {
 
 /** What a first visitor may do, each with what it is good for. */
 function Welcome({ children, onProblem }: { children: ComponentChildren; onProblem: (problem: Problem) => void }) {
+  const [drafting, setDrafting] = useState(false);
+  const draftOne = async () => {
+    setDrafting(true);
+    await draftSuggested().then(go, (error: unknown) => onProblem(asProblem(error)));
+    setDrafting(false);
+  };
   return (
     <div class="welcome" data-testid="welcome">
       <h2>{t("missions.welcome")}</h2>
@@ -256,12 +262,7 @@ function Welcome({ children, onProblem }: { children: ComponentChildren; onProbl
         <span>{t("missions.welcome.planHint")}</span>
       </a>
       {me.value?.role !== "viewer" && (
-        <button
-          type="button"
-          class="welcome-way"
-          data-testid="welcome-suggested"
-          onClick={() => void draftSuggested().then(go, (error: unknown) => onProblem(asProblem(error)))}
-        >
+        <button type="button" class="welcome-way" data-testid="welcome-suggested" disabled={drafting} onClick={draftOne}>
           <strong>{t("missions.welcome.suggested")}</strong>
           <span>{t("missions.welcome.suggestedHint")}</span>
         </button>

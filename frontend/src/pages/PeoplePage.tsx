@@ -125,6 +125,7 @@ function Alone() {
 export function PeoplePage() {
   const [listed, setListed] = useState<Listed | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
+  const [sending, setSending] = useState(false);
   const admin = me.value?.admin ?? false;
   const alone = me.value === null;
   const fail = (error: unknown) => {
@@ -134,7 +135,11 @@ export function PeoplePage() {
   const reload = () => (alone ? Promise.resolve() : read(admin).then(setListed, fail));
   const attempt: Try = (doing) => {
     setProblem(null);
-    void doing.catch(fail).then(reload);
+    setSending(true); // what is shown is older than what was sent
+    void doing
+      .catch(fail)
+      .then(reload)
+      .then(() => setSending(false));
   };
   useEffect(() => {
     void reload();
@@ -149,13 +154,13 @@ export function PeoplePage() {
             <div class="page-head">
               <h1>{t("menu.people")}</h1>
             </div>
-            <ul class="cards">
+            <ul class="cards" data-testid="people" inert={sending}>
               {listed.people.map((person) => (
                 <Row person={person} attempt={attempt} key={person.person_id} />
               ))}
             </ul>
           </section>
-          <Invitations list={listed.invitations} attempt={attempt} />
+          <Invitations list={listed.invitations} sending={sending} attempt={attempt} />
           <Machines list={listed.tokens} attempt={attempt} />
         </>
       )}
