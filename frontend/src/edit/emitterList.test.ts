@@ -21,6 +21,24 @@ it("what is shown is read as the same emitters", () => {
   expect(readList(listOf(emitters), emitters)).toEqual({ emitters, bad: [] });
 });
 
+it("a name that begins like a unit or a period stays a name", () => {
+  const labels = ["GHz jammer", "hz", "/2 fox", "hzarbor", "GHz-band"];
+  const named = labels.map((label, i) => ({ ...before[0]!, emitter_id: `emitter-${i + 1}`, frequency_hz: 868_300_000 + i * 1e5, label }));
+  expect(listOf(named).split("\n")[0]).toBe("868.3: GHz jammer");
+  expect(readList(listOf(named), named)).toEqual({ emitters: named, bad: [] });
+});
+
+it("a comma with a space parts the name from the frequency", () => {
+  const { emitters, bad } = readList("150.100, lynx\n150,2, boar\n150.3,hare\n868.3 GHz, jammer", before);
+  expect(bad).toEqual([]);
+  expect(emitters.map((e) => [e.frequency_hz, e.label])).toEqual([
+    [150_100_000, "lynx"],
+    [150_200_000, "boar"],
+    [150_300_000, "hare"],
+    [868_300_000_000, "jammer"],
+  ]);
+});
+
 it("a frequency that stays keeps its prior and its rhythm", () => {
   const known = [{ ...before[0]!, emitter_id: "mine", pulse_period_s: 2.5 }];
   const { emitters } = readList("151\n150 renamed", known);

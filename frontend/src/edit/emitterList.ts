@@ -8,7 +8,9 @@ export const MOST_EMITTERS = 32;
 
 const HZ: Record<string, number> = { hz: 1, khz: 1e3, mhz: 1e6, ghz: 1e9 };
 /** MHz unless a unit is written; behind a slash a tag's period in seconds; what follows is the name. */
-const LINE = /^([\d.,]+)\s*(hz|khz|mhz|ghz)?(?:\s*\/\s*([\d.,]+)\s*s?)?(?:[\s;,:]+(.*))?$/i;
+const LINE = /^([\d.,]*[\d.])\s*(hz|khz|mhz|ghz)?(?:\s*\/\s*([\d.,]+)\s*s?)?(?:[\s;,:]+(.*))?$/i;
+/** A name that would be read as a unit or a period stands behind a colon. */
+const LIKE_UNIT = /^([kmg]?hz\b|\/)/i;
 /** Behind the name: where it stands in the order of importance, 1 first. */
 const PRIORITY = /\s!(\d{1,9})$/;
 const LONGEST_PERIOD_S = 60;
@@ -31,7 +33,9 @@ export function listOf(emitters: readonly EmitterSpec[]): string {
   const alike = new Set(emitters.map((e) => (e.kind === "pulsed" ? e.pulse_period_s : 0))).size === 1;
   const period = (e: EmitterSpec) => (alike || e.kind !== "pulsed" ? "" : `/${e.pulse_period_s}`);
   const rank = (e: EmitterSpec) => (e.priority ? ` !${e.priority}` : "");
-  return emitters.map((e) => `${shownMhz(e.frequency_hz)}${period(e)} ${e.label}${rank(e)}`).join("\n");
+  return emitters
+    .map((e) => `${shownMhz(e.frequency_hz)}${period(e)}${LIKE_UNIT.test(e.label) ? ":" : ""} ${e.label}${rank(e)}`)
+    .join("\n");
 }
 
 interface Read {

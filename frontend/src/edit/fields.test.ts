@@ -38,7 +38,24 @@ it("numbers are read as people type them", () => {
   expect(typedNumber(" 7,5 ")).toBe(7.5);
   expect(typedNumber("-3")).toBe(-3);
   expect(typedNumber(".5")).toBe(0.5);
-  for (const text of ["", "seven", "1.2.3", "0x10", "1 000"]) expect(typedNumber(text)).toBeNull();
+  expect(typedNumber("0,125")).toBe(0.125);
+  expect(typedNumber("868.125")).toBe(868.125);
+  for (const text of ["", "seven", "1.2.3", "0x10", "1 000", "1,000", "-868,125", "1,575.42"]) expect(typedNumber(text), text).toBeNull();
+});
+
+it("what may be thousands in German is not guessed at", () => {
+  locale.value = "de";
+  expect(typedNumber("868,125")).toBe(868.125);
+  expect(typedNumber("1.5")).toBe(1.5);
+  for (const text of ["1.000", "868.125", "1.575,42"]) expect(typedNumber(text), text).toBeNull();
+  locale.value = "en";
+});
+
+it("is shown to the last digit that is kept", () => {
+  expect(shownValue(1_234_567_891, 1)).toBe("1234567891");
+  expect(shownValue(1_575_420_125, 1e6)).toBe("1575.420125");
+  expect(shownValue(0.07, 0.01)).toBe("7");
+  expect(shownValue(40, 0.3048)).toBe("131.2336");
 });
 
 it("numbers are shown as they are written in the operator's language", () => {

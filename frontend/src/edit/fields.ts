@@ -224,15 +224,16 @@ export function shownUnit(field: NumberField, system: UnitSystem): { unit: strin
   return { unit: converted?.unit ?? field.unit, scale: (converted?.scale ?? 1) * (field.scale ?? 1) };
 }
 
-/** Stored to shown, without the noise of floating point. */
+/** Stored to shown, without the noise of floating point; feet of whole metres end nowhere. */
 export function shownValue(stored: number, scale: number): string {
-  const text = String(Number((stored / scale).toPrecision(7)));
+  const text = String(Number((stored / scale).toPrecision(Number.isInteger(Math.log10(scale)) ? 12 : 7)));
   return locale.value === "de" ? text.replace(".", ",") : text;
 }
 
-/** Number from what was typed (a decimal comma is fine); null when it is none. */
+/** Number from what was typed (a decimal comma is fine); null when it is none, or may have a mark between thousands. */
 export function typedNumber(text: string): number | null {
   const plain = text.trim().replace(",", ".");
-  if (!/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(plain)) return null;
+  const mayBeThousands = /^[+-]?[1-9]\d{0,2}\.\d{3}$/.test(plain) && text.includes(locale.value === "de" ? "." : ",");
+  if (mayBeThousands || !/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(plain)) return null;
   return Number(plain);
 }

@@ -831,7 +831,7 @@ export const de: Record<MessageKey, string> = {
   "edit.receiverSilent": "Empfänger gilt als stumm nach",
   "edit.more": "Weitere Einstellungen",
   "edit.notPlace": "Das ist kein Ort. Schreibweise: 50.73400 N 7.09800 E, oder DMS, UTM, MGRS.",
-  "edit.notNumber": "Bitte eine Zahl angeben.",
+  "edit.notNumber": "Bitte eine Zahl angeben, ohne Zeichen zwischen Tausendern.",
   "edit.tooFew": "Ein Gebiet braucht mindestens drei Ecken.",
   "edit.noArea": "Zuerst das Suchgebiet zeichnen oder einlesen.",
   "edit.importFailed": "{name} ließ sich nicht lesen: {reason}",

@@ -410,7 +410,7 @@ export const pagesEn = {
   "edit.receiverSilent": "Receiver silent after",
   "edit.more": "More settings",
   "edit.notPlace": "This is not a place. Write it like 50.73400 N 7.09800 E, or as DMS, UTM or MGRS.",
-  "edit.notNumber": "Please give a number.",
+  "edit.notNumber": "Please give a number, without a mark between thousands.",
   "edit.tooFew": "An area needs at least three corners.",
   "edit.noArea": "Draw or import the search area first.",
   "edit.importFailed": "{name} could not be read: {reason}",

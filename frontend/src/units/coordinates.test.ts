@@ -48,6 +48,9 @@ describe("parsePlace", () => {
   it("reads plain pairs with sign, comma or semicolon", () => {
     expect(parsePlace("-33.5, -70.6")).toEqual({ lat: -33.5, lon: -70.6 });
     expect(parsePlace("50.5;7.2")).toEqual({ lat: 50.5, lon: 7.2 });
+    expect(parsePlace("50, 7")).toEqual({ lat: 50, lon: 7 });
+    expect(parsePlace("50.62,7")).toEqual({ lat: 50.62, lon: 7 });
+    for (const half of ["50,62", " -50,62 "]) expect(parsePlace(half)).toBeNull();
     expect(parsePlace("33.5 S 70.6 W")).toEqual({ lat: -33.5, lon: -70.6 });
   });
 

@@ -3,8 +3,9 @@
 import type { Place } from "../wire";
 import { parseGrid } from "./gridNotation";
 
+/** "50,62" is half a place with a decimal comma, not two whole numbers. */
 function parseDecimal(text: string): Place | null {
-  const found = /^\s*([+-]?\d+(?:\.\d+)?)\s*°?\s*([NS])?[\s,;]+([+-]?\d+(?:\.\d+)?)\s*°?\s*([EW])?\s*$/i.exec(text);
+  const found = /^\s*(?![+-]?\d+,\d+\s*$)([+-]?\d+(?:\.\d+)?)\s*°?\s*([NS])?[\s,;]+([+-]?\d+(?:\.\d+)?)\s*°?\s*([EW])?\s*$/i.exec(text);
   if (!found) return null;
   const lat = Number(found[1]) * (found[2]?.toUpperCase() === "S" ? -1 : 1);
   const lon = Number(found[3]) * (found[4]?.toUpperCase() === "W" ? -1 : 1);
