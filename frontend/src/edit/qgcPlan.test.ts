@@ -52,6 +52,7 @@ it("keeps what must not be entered apart", () => {
 
 it.each([
   ["not JSON", "{"],
+  ["nothing", "null"],
   ["another file", JSON.stringify({ fileType: "Mission" })],
   ["no fence", plan({ polygons: [] })],
   [

@@ -29,13 +29,13 @@ interface PlanFile {
 const swap = ([lat, lon]: [number, number]): LonLat => [lon, lat];
 
 export function readPlan(text: string): PlanFence {
-  let plan: PlanFile;
+  let plan: PlanFile | null;
   try {
-    plan = JSON.parse(text) as PlanFile;
+    plan = JSON.parse(text) as PlanFile | null;
   } catch {
     throw new NotAPlan("edit.plan.notJson");
   }
-  if (plan.fileType !== "Plan") throw new NotAPlan("edit.plan.otherFile");
+  if (plan?.fileType !== "Plan") throw new NotAPlan("edit.plan.otherFile");
   const found: PlanFence = { inclusions: [], exclusions: [] };
   for (const { inclusion, polygon } of plan.geoFence?.polygons ?? []) {
     if (!polygon || polygon.length < 3) throw new NotAPlan("edit.plan.tooFewCorners");

@@ -9,6 +9,9 @@ import { PlaceFilter } from "./PlaceFilter";
 
 const OUTCOMES = ["localized", "not_localized", "aborted", "failed"] as const;
 
+/** The year of a day has four digits while it is typed, too. */
+const DAY = { type: "date", max: "9999-12-31" };
+
 interface Properties {
   filter: Filter;
   missions: readonly MissionSummary[];
@@ -38,8 +41,8 @@ export function LibraryFilter({ filter, missions, onChange }: Properties) {
       <div class="filter-fields">
         {field("missions.filter.emitter", "emitter", {})}
         {field("missions.filter.vehicle", "vehicle", {})}
-        {field("missions.filter.since", "since", { type: "date" })}
-        {field("missions.filter.until", "until", { type: "date" })}
+        {field("missions.filter.since", "since", DAY)}
+        {field("missions.filter.until", "until", DAY)}
         <label>
           {t("missions.filter.outcome")}
           <select data-testid="filter-outcome" value={filter.outcome} onChange={(e) => set({ outcome: e.currentTarget.value })}>

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import type { MissionSummary } from "../wire";
-import { type Library, withFirstPage, withNextPage } from "./library";
+import { ANY, asQuery, type Library, withFirstPage, withNextPage } from "./library";
 
 const mission = (n: number, bearings = 0) =>
   ({ mission_id: `m${n}`, drafted_at_utc: `2026-01-${String(n).padStart(2, "0")}T00:00:00Z`, bearings }) as MissionSummary;
@@ -25,4 +25,12 @@ test("another name begins a list of its own", () => {
 test("before a further page was read, the first page is the list: what was taken away is gone", () => {
   const first = withFirstPage(null, "", { missions: [mission(4), mission(3)], next: null });
   expect(ids(withFirstPage(first, "", { missions: [mission(3)], next: null }))).toEqual(["m3"]);
+});
+
+test("days are asked for as instants, the last one included; what is no day is not asked for", () => {
+  expect(asQuery({ ...ANY, since: "2026-11-01", until: "2026-11-30" })).toEqual({
+    since: "2026-11-01T00:00:00.000Z",
+    until: "2026-12-01T00:00:00.000Z",
+  });
+  for (const day of ["", "20266-11-30", "9999-12-31"]) expect(asQuery({ ...ANY, since: day, until: day })).toEqual({});
 });

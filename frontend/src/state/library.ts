@@ -17,10 +17,15 @@ export const ANY: Filter = { named: "", emitter: "", vehicle: "", outcome: "", b
 
 const DAY_MS = 86_400_000;
 
+/** "" for what is no day of a year of four digits. */
+function midnight(day: string, later = 0): string {
+  const at = Date.parse(`${day}T00:00:00Z`) + later;
+  return at < Date.UTC(9999, 11, 31) ? new Date(at).toISOString() : "";
+}
+
 /** As the address of the list says it: what is asked, and nothing besides. */
 export function asQuery({ since, until, deleted, ...words }: Filter): Record<string, string> {
-  const after = until === "" ? "" : new Date(Date.parse(`${until}T00:00:00Z`) + DAY_MS).toISOString();
-  const asked = { ...words, since: since === "" ? "" : `${since}T00:00:00Z`, until: after, deleted: deleted ? "true" : "" };
+  const asked = { ...words, since: midnight(since), until: midnight(until, DAY_MS), deleted: deleted ? "true" : "" };
   return Object.fromEntries(Object.entries(asked).flatMap(([name, said]) => (said.trim() === "" ? [] : [[name, said.trim()]])));
 }
 
