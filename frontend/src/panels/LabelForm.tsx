@@ -6,13 +6,27 @@ import { label, remove, restore } from "../sources/libraryApi";
 import type { MissionSummary, Problem } from "../wire";
 import { ProblemBox } from "./ProblemNote";
 
+/** What was typed and is not saved yet, by mission: the form closes when another row's is opened. */
+const unsaved = new Map<string, { name: string; tags: string; notes: string }>();
+
 export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone: () => void }) {
   const { mission_id: id, deleted_at_utc: deleted } = mission;
-  const [name, setName] = useState(mission.name);
-  const [tags, setTags] = useState(mission.tags.join(", "));
-  const [notes, setNotes] = useState(mission.notes);
+  const [typed, setTyped] = useState(unsaved.get(id) ?? { name: mission.name, tags: mission.tags.join(", "), notes: mission.notes });
   const [problem, setProblem] = useState<Problem | null>(null);
-  const after = (done: Promise<unknown>) => void done.then(onDone, (error: unknown) => setProblem(asProblem(error)));
+  const [sending, setSending] = useState(false);
+  const { name, tags, notes } = typed;
+  const type = (changes: Partial<typeof typed>) => {
+    const next = { ...typed, ...changes };
+    unsaved.set(id, next);
+    setTyped(next);
+  };
+  const after = (done: Promise<unknown>) => {
+    setSending(true); // what is typed meanwhile would not be sent
+    done.then(onDone, (error: unknown) => {
+      setProblem(asProblem(error));
+      setSending(false);
+    });
+  };
   const labels = () => ({
     name,
     notes,
@@ -25,22 +39,23 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
     <form
       class="label-form"
       data-testid="label-form"
+      inert={sending}
       onSubmit={(e) => {
         e.preventDefault();
-        after(label(id, labels()));
+        after(label(id, labels()).then(() => unsaved.delete(id)));
       }}
     >
       <label>
         {t("missions.name")}
-        <input data-testid="label-name" value={name} onInput={(e) => setName(e.currentTarget.value)} />
+        <input data-testid="label-name" value={name} onInput={(e) => type({ name: e.currentTarget.value })} />
       </label>
       <label>
         {t("missions.tags")}
-        <input data-testid="label-tags" value={tags} onInput={(e) => setTags(e.currentTarget.value)} />
+        <input data-testid="label-tags" value={tags} onInput={(e) => type({ tags: e.currentTarget.value })} />
       </label>
       <label>
         {t("missions.notes")}
-        <textarea data-testid="label-notes" rows={3} value={notes} onInput={(e) => setNotes(e.currentTarget.value)} />
+        <textarea data-testid="label-notes" rows={3} value={notes} onInput={(e) => type({ notes: e.currentTarget.value })} />
       </label>
       {problem && <ProblemBox problem={problem} />}
       <div class="row-actions">
