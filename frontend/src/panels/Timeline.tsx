@@ -14,6 +14,7 @@ import type { MissionEvent, Recorded } from "../wire";
 import { Icon } from "./Icon";
 
 const showAll = signal(false);
+const pace = signal(10);
 
 /** Seconds of the mission a second. */
 const PACES = [0.5, 1, 2, 5, 10, 20, 50];
@@ -61,23 +62,24 @@ function Doings({ all, craftId, share }: { all: readonly Recorded[]; craftId: st
   });
 }
 
-/** Runs through the recorded moments, `speed` seconds of the mission a second. */
-function usePlayback(all: readonly Recorded[]): [number | null, (speed: number | null) => void] {
+/** Runs through the recorded moments, `speed` seconds of the mission a second, until somebody looks elsewhere. */
+function usePlayback(): [number | null, (speed: number | null) => void] {
   const [speed, setSpeed] = useState<number | null>(null);
   useEffect(() => {
-    if (speed === null) return;
-    const from = events.peek().find((e) => e.seq === cursor.peek()) ?? events.peek()[0];
-    if (!from) return;
+    let shown = cursor.peek();
+    const from = events.peek().find((e) => e.seq === shown);
+    if (speed === null || !from) return;
     const missionMs = Date.parse(from.at_utc);
     const began = performance.now();
     const timer = setInterval(() => {
+      if (cursor.peek() !== shown) return setSpeed(null);
       const time = missionMs + (performance.now() - began) * speed;
-      const at = events.peek().findLast((e) => Date.parse(e.at_utc) <= time);
-      if (at && at.seq !== cursor.peek()) look(at.seq);
-      if (at && at.seq >= (lastFlown(events.peek())?.seq ?? 0)) setSpeed(null);
+      shown = (events.peek().findLast((e) => Date.parse(e.at_utc) <= time) ?? from).seq;
+      look(shown);
+      if (shown >= lastFlown(events.peek())!.seq) setSpeed(null);
     }, 100);
     return () => clearInterval(timer);
-  }, [speed, all.length === 0]);
+  }, [speed]);
   return [speed, setSpeed];
 }
 
@@ -221,8 +223,7 @@ function liveLabel(reviewing: boolean): MessageKey {
 export function Timeline() {
   const all = events.value;
   const reviewing = cursor.value !== null;
-  const [speed, play] = usePlayback(all);
-  const [pace, setPace] = useState(10);
+  const [speed, play] = usePlayback();
   return (
     <section class="timeline" aria-label={t("timeline.label")} data-testid="timeline" data-tour="6">
       <Strip all={all} />
@@ -233,10 +234,7 @@ export function Timeline() {
             class={reviewing ? "primary" : "is-live"}
             data-testid="go-live"
             data-live={!reviewing}
-            onClick={() => {
-              play(null);
-              look(null);
-            }}
+            onClick={() => look(null)}
           >
             {t(liveLabel(reviewing))}
           </button>
@@ -265,8 +263,8 @@ export function Timeline() {
             data-testid="play"
             disabled={all.length === 0}
             onClick={() => {
-              if (speed === null && cursor.peek() === null && all[0]) look(all[0].seq);
-              play(speed === null ? pace : null);
+              if (speed === null && (cursor.peek() ?? Infinity) >= lastFlown(all)!.seq) look(all[0]!.seq);
+              play(speed === null ? pace.value : null);
             }}
           >
             <Icon name={speed === null ? "play" : "pause"} />
@@ -279,9 +277,8 @@ export function Timeline() {
             aria-label={t("timeline.pace")}
             value={pace}
             onChange={(e) => {
-              const chosen = Number(e.currentTarget.value);
-              setPace(chosen);
-              if (speed !== null) play(chosen);
+              pace.value = Number(e.currentTarget.value);
+              if (speed !== null) play(pace.value);
             }}
           >
             {PACES.map((one) => (
