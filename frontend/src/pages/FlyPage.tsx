@@ -15,8 +15,9 @@ import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
 import { TruthCard } from "../panels/TruthCard";
 import { WaysCard } from "../panels/WaysCard";
-import { type Card, chosenCard } from "../state/card";
+import { type Card, chosenCard, drawersCard } from "../state/card";
 import { live, source } from "../state/connection";
+import { cursor, liveMission } from "../state/moment";
 import { mission } from "../state/shown";
 import "../style/review.css";
 import "../style/sweep.css";
@@ -101,8 +102,9 @@ function Cards({ cards, shown }: { cards: readonly Card[]; shown: Card }) {
 const RESULTS: readonly Card[] = ["estimate", "sweep", "truth"];
 
 export function FlyPage() {
-  const { phase, missionId, bearings, rejected } = mission.value;
-  const before = phase === "draft" || phase === "ready";
+  const { missionId, bearings, rejected } = mission.value;
+  const planned = drawersCard(liveMission.value.phase) === "checks";
+  const before = planned && cursor.value === null && source.value?.takesCommands;
   const heard = bearings.length + rejected.length > 0;
   const flown: Card[] = before ? [] : ["plan"];
   const cards: Card[] = [...(before ? (["checks"] as const) : []), ...(heard || !before ? RESULTS : []), ...flown, "events"];
@@ -126,12 +128,12 @@ export function FlyPage() {
         {!before && <PlanPanel />}
         <TruthCard />
         <div class="drawers">
-          {before && missionId && <AntennaCheck missionId={missionId} />}
+          {planned && missionId && <AntennaCheck missionId={missionId} />}
           <ImportRecording />
-          {before && missionId && <WaysCard missionId={missionId} />}
+          {planned && missionId && <WaysCard missionId={missionId} />}
         </div>
       </aside>
-      <Timeline />
+      <Timeline key={missionId} />
     </div>
   );
 }
