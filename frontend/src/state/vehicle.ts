@@ -25,15 +25,16 @@ async function loadTrack(from: Source, missionId: string, craftId: string): Prom
 const craftFlown = computed(() => liveMission.value.craftId);
 
 effect(() => {
-  const [from, craftId] = [source.value, craftFlown.value];
+  void [source.value, craftFlown.value];
   track.value = [];
-  if (from?.missionId && craftId !== null) void loadTrack(from, from.missionId, craftId);
 });
 
 const reviewing = computed(() => cursor.value !== null);
+/** Another one comes after each gap, in which nothing was heard of the flight. */
+const hello = computed(() => live.value.hello);
 effect(() => {
-  const [from, { missionId, craftId }] = [source.peek(), liveMission.peek()];
-  if (reviewing.value && from && missionId && craftId !== null) void loadTrack(from, missionId, craftId);
+  const [from, craftId] = [source.value, craftFlown.value, reviewing.value, hello.value];
+  if (from?.missionId && craftId !== null) void loadTrack(from, from.missionId, craftId);
 });
 
 const reviewPoint = computed<TrackFact | null>(() => {

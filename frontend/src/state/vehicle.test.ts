@@ -1,0 +1,26 @@
+// @vitest-environment happy-dom
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { FakeSource } from "../sources/fakeSource";
+import type { Hello, TrackFact } from "../wire";
+import { CRAFT, record, someTelemetry, started } from "../wire/examples";
+import { open } from "./open";
+import { path } from "./vehicle";
+
+const hello = { type: "hello", last_seq: 1, mission_id: "m", server_version: "", time_factor: 1 } as Hello;
+
+beforeEach(() => vi.useFakeTimers());
+afterEach(() => vi.useRealTimers());
+
+it("reads what was flown again after a gap, and once only before", async () => {
+  const stored: TrackFact[] = [];
+  const source = new FakeSource();
+  const track = vi.spyOn(source, "track").mockImplementation(async () => ({ mission_id: "m", craft_id: CRAFT, points: [...stored] }));
+  open(source);
+  source.tell(hello, { type: "event", recorded: record(started())[0]! }, someTelemetry({ craft_id: CRAFT, lon: 7.1 }));
+  await vi.advanceTimersByTimeAsync(1000);
+  expect(track).toHaveBeenCalledOnce();
+  for (const lon of [7.1, 7.15, 7.2]) stored.push({ at_utc: "2026-05-01T10:00:00Z", lat: 50.7, lon, heading_deg: 0 } as TrackFact);
+  source.tell({ ...hello }, someTelemetry({ craft_id: CRAFT, lon: 7.2 }));
+  await vi.advanceTimersByTimeAsync(1000);
+  expect(path.value.map(([lon]) => lon)).toEqual([7.1, 7.15, 7.2]);
+});
