@@ -186,8 +186,9 @@ export function SweepPanel() {
   const state = mission.value;
   const sweeps = sweepsOf(state);
   const running = cursor.value === null && state.phase === "measuring" ? sweepHeard.value : null;
-  const sweep = sweeps.find((s) => s.seq === picked) ?? sweeps[0];
-  const showRunning = running?.mission_id === state.missionId && picked === null;
+  const chosen = sweeps.find((s) => s.seq === picked);
+  const sweep = chosen ?? sweeps[0];
+  const showRunning = running?.mission_id === state.missionId && !chosen;
   const ways = <OnTheWay ways={state.ways} />;
   const beside = sweep && !(running && showRunning);
   return (
@@ -198,7 +199,7 @@ export function SweepPanel() {
         {sweeps.length > 0 && (
           <select
             aria-label={t("sweep.choose")}
-            value={picked ?? ""}
+            value={chosen?.seq ?? ""}
             onChange={(e) => setPicked(e.currentTarget.value === "" ? null : Number(e.currentTarget.value))}
           >
             <option value="">{t("sweep.latest")}</option>
