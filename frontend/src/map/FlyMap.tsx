@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { type GeoJSONSource, type Map as GlMap, type ImageSource, type MapMouseEvent, Marker } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
-import { cancelProposal, proposal, propose } from "../commands/proposal";
+import { proposal, propose } from "../commands/proposal";
 import { tapping, tell } from "../commands/truth";
 import { type MessageKey, reasonText, t } from "../i18n";
 import { bannerPx } from "../panels/AlertsButton";
@@ -118,8 +118,8 @@ function putOverlays(map: GlMap): void {
 }
 
 function canPropose(): boolean {
-  const { missionId, ended, phase } = mission.peek();
-  return cursor.peek() === null && missionId !== null && ended === null && inFlight(phase);
+  const { missionId, phase } = mission.peek();
+  return cursor.peek() === null && missionId !== null && inFlight(phase) && !isHomeward(mission.peek());
 }
 
 /** Everything that follows a signal, each in its own effect so that telemetry never redraws the plan. */
@@ -351,7 +351,6 @@ export function FlyMap() {
       unbind();
       created.remove();
       map.current = null;
-      cancelProposal();
     };
   }, [theme, units, basemap.value]);
   return (

@@ -2,12 +2,13 @@
 import { render } from "preact";
 import { act } from "preact/test-utils";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { proposal, propose } from "../commands/proposal";
 import { FakeSource } from "../sources/fakeSource";
 import { open } from "../state/open";
 import { selectedCraft } from "../state/selection";
 import { mission } from "../state/shown";
-import type { MissionEvent } from "../wire";
-import { CRAFT, phase, record, someSpec, started } from "../wire/examples";
+import type { MissionEvent, Recorded } from "../wire";
+import { CRAFT, phase, record, somePlan, someSpec, started } from "../wire/examples";
 import { PlanPanel } from "./PlanPanel";
 import { WhichShown } from "./WhichShown";
 
@@ -46,9 +47,13 @@ const drafted = (emitters: number): MissionEvent => {
   return { kind: "mission_drafted", spec: { ...spec, emitters: several } };
 };
 
-beforeEach(() => vi.useFakeTimers());
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.stubGlobal("fetch", () => new Promise(() => undefined));
+});
 afterEach(() => {
   act(() => render(null, document.body));
+  vi.unstubAllGlobals();
   vi.useRealTimers();
 });
 
@@ -79,4 +84,52 @@ it("shows another emitter of several, and the first again in another mission", (
   expect(mission.value.emitterId).toBe("e2");
   show(drafted(2));
   expect(mission.value.emitterId).toBe("e1");
+});
+
+const other = { lat: 50.9, lon: 7.3 };
+const asked = (source: FakeSource) => vi.spyOn(source, "expectedTime").mockReturnValue(new Promise(() => undefined));
+const tell = (source: FakeSource, ...events: Recorded[]) =>
+  act(() => {
+    for (const recorded of events) source.tell({ type: "event", recorded });
+    vi.advanceTimersByTime(200);
+  });
+
+it("prices an open proposal again when another place is chosen, and lets it fall when it is the one", () => {
+  const before = [drafted(1), started(), somePlan(), phase("waiting")];
+  const source = show(...before);
+  const asking = asked(source);
+  act(() => propose(other));
+  tell(source, ...record(...before, somePlan({ place: { lat: 50.8, lon: 7.2 } })));
+  expect(asking.mock.lastCall?.[3]).toEqual({ lat: 50.8, lon: 7.2 });
+  expect(asking).toHaveBeenCalledTimes(2);
+  tell(source, ...record(...before, somePlan({ place: { lat: 50.8, lon: 7.2 } }), somePlan({ place: other })));
+  expect(proposal.value).toBeNull();
+});
+
+it("offers no other place on the way home, and drops the one that was open", () => {
+  const before = [drafted(1), started(), somePlan(), phase("flying")];
+  const source = show(...before);
+  asked(source);
+  act(() => propose(other));
+  expect(part("proposal")).not.toBeNull();
+  tell(source, ...record(...before, phase("returning")));
+  expect(proposal.value).toBeNull();
+  expect(document.querySelector(".candidate-name:enabled")).toBeNull();
+});
+
+it("drops an open proposal with the mission", () => {
+  const source = show(drafted(1), started(), somePlan(), phase("flying"));
+  asked(source);
+  act(() => propose(other));
+  show();
+  expect(proposal.value).toBeNull();
+});
+
+it("accepts once, however often it is pressed", async () => {
+  const source = show(drafted(1), started(), somePlan(), phase("waiting"));
+  act(() => part("accept")!.click());
+  act(() => part("accept")!.click());
+  expect(source.sent).toHaveLength(1);
+  await act(async () => void (await vi.advanceTimersByTimeAsync(0)));
+  expect(part<HTMLButtonElement>("accept")!.disabled).toBe(false);
 });

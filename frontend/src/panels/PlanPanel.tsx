@@ -1,5 +1,5 @@
 // Where to go next, what else was considered, why this one; accept, veto, or another place by slide.
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { cancelProposal, confirmProposal, type Proposal, proposal, propose } from "../commands/proposal";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { send } from "../commands/send";
@@ -65,7 +65,7 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
     },
     [plan],
   );
-  const canPropose = cursor.value === null && !mission.value.ended;
+  const canPropose = cursor.value === null && !isHomeward(mission.value);
   return (
     // it scrolls, and in a review none of its rows takes the keyboard
     <div class="candidate-box" ref={box} tabIndex={canPropose ? undefined : 0}>
@@ -190,14 +190,20 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
 function Decision({ id }: { id: string }) {
   const { phase, automatic, craftId: craft_id } = mission.value;
   const waiting = phase === "waiting";
+  const [accepting, setAccepting] = useState(false);
+  const accept = async () => {
+    setAccepting(true);
+    await send("plan", id, { kind: "accept", craft_id });
+    setAccepting(false);
+  };
   return (
     <div class="decision">
       <button
         type="button"
         class={waiting ? "primary" : ""}
         data-testid="accept"
-        disabled={!waiting}
-        onClick={() => void send("plan", id, { kind: "accept", craft_id })}
+        disabled={!waiting || accepting}
+        onClick={() => void accept()}
       >
         {t("plan.accept")}
       </button>
@@ -228,7 +234,22 @@ function Decision({ id }: { id: string }) {
   );
 }
 
+/** An open proposal is priced again when another place is chosen, and falls when it was the one, on the way home and with the page. */
+function useProposal() {
+  const { missionId, plan } = liveMission.value;
+  const isHome = isHomeward(liveMission.value);
+  useEffect(() => {
+    const place = proposal.peek()?.place;
+    if (!place) return;
+    const next = plan?.fact.place;
+    if (isHome || (next?.lat === place.lat && next.lon === place.lon)) cancelProposal();
+    else propose(place);
+  }, [plan?.fact, isHome]);
+  useEffect(() => cancelProposal, [missionId]);
+}
+
 export function PlanPanel() {
+  useProposal();
   const { plan, missionId, phase, startedAt, spec } = mission.value;
   const proposed = proposal.value;
   const isLive = cursor.value === null && !isHomeward(mission.value);
@@ -247,7 +268,9 @@ export function PlanPanel() {
       </h2>
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
-      {missionId && isLive && startedAt && liveMission.value.missionId === missionId && <Decision id={missionId} />}
+      {missionId && isLive && startedAt && liveMission.value.missionId === missionId && (
+        <Decision id={missionId} key={mission.value.craftId} />
+      )}
       {missionId && isLive && source.value?.keptByServer && phase === "hold" && (
         <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
           {t("area.change")}
