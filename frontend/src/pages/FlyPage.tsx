@@ -117,7 +117,7 @@ export function FlyPage() {
     <div class="fly" data-testid="fly" data-card={shown}>
       <MapArea />
       <Cards cards={cards} shown={shown} />
-      <aside class="side">
+      <aside class="side" key={missionId}>
         {before && missionId && <PreflightPanel missionId={missionId} />}
         {(!before || heard) && (
           <>

@@ -8,7 +8,7 @@ import type { MissionEvent } from "../wire";
 import { record, someBelief, somePlan, someSpec, started } from "../wire/examples";
 import { EmitterList } from "./EmitterList";
 
-const sent = vi.fn();
+const sent = vi.fn((..._given: unknown[]) => Promise.resolve(true));
 vi.mock("../commands/send", () => ({ send: (...given: unknown[]) => sent(...given), problems: { value: {} }, report: () => undefined }));
 
 const part = (name: string) => document.querySelector<HTMLElement>(`[data-testid="${name}"]`);
@@ -76,13 +76,24 @@ it("gives the whole order with each press, and offers no step that there is not"
   press("order");
   press("first-c");
   expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { c: 1, b: 2 } });
-  press("sooner-a");
-  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { b: 1, a: 2 } });
+  expect(part("sooner-c")?.getAttribute("aria-disabled")).toBe("true");
+  press("sooner-c");
+  expect(sent).toHaveBeenCalledTimes(1);
+});
+
+it("goes on from what was pressed before the server has told it, and from the server's order after a refusal", async () => {
+  show();
+  press("order");
+  press("sooner-c");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { b: 1, c: 2 } });
+  press("sooner-c");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { b: 1, c: 1 } });
+  sent.mockResolvedValueOnce(false);
+  press("sooner-c");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { c: 1, b: 2 } });
+  await act(() => Promise.resolve());
   press("later-b");
   expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: {} });
-  expect(part("sooner-b")?.getAttribute("aria-disabled")).toBe("true");
-  press("sooner-b");
-  expect(sent).toHaveBeenCalledTimes(3);
 });
 
 it("takes no orders for a recording", () => {

@@ -1,12 +1,13 @@
 // All emitters of a search that has several: number and colour as on the map, how far each one is, and their order of importance.
 import { signal } from "@preact/signals";
+import { useEffect, useState } from "preact/hooks";
 import { send } from "../commands/send";
 import { t } from "../i18n";
 import { source } from "../state/connection";
 import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
 import { emitterName } from "../state/emitterName";
-import { groupsOf } from "../state/importance";
+import { groupsOf, inOrder, type Priorities } from "../state/importance";
 import { cursor, emittersThen } from "../state/moment";
 import { selectedEmitter } from "../state/selection";
 import { settings } from "../state/settings";
@@ -38,7 +39,18 @@ function signalWords(emitters: readonly EmitterSpec[], index: number): string {
 
 export function EmitterList() {
   const { spec, emitterId, missionId, plan, startedAt, ended } = mission.value;
-  const emitters = spec?.emitters ?? [];
+  const told = spec?.emitters ?? [];
+  const [sent, setSent] = useState<Priorities | null>(null);
+  const emitters = sent ? inOrder(told, sent) : told; // the next press goes on from what was sent
+  const isTold = JSON.stringify(groupsOf(emitters)) === JSON.stringify(groupsOf(told));
+  useEffect(() => {
+    if (isTold || !ordering.value) setSent(null);
+  }, [isTold, ordering.value]);
+  const order = async (id: string, priorities: Priorities) => {
+    setSent(priorities);
+    const accepted = await send("order", id, { kind: "set_priorities", priorities });
+    if (!accepted) setSent((last) => (last === priorities ? null : last));
+  };
   if (emitters.length < 2) return null;
   const states = emittersThen.value;
   const found = emitters.filter((e) => states.get(e.emitter_id)?.belief?.fact.localized).length;
@@ -91,13 +103,7 @@ export function EmitterList() {
                   {left !== undefined && <small data-testid={`left-${id}`}>{t("emitters.left", { time: formatDuration(left) })}</small>}
                 </span>
               </button>
-              {open && (
-                <OrderButtons
-                  emitters={emitters}
-                  id={id}
-                  onOrder={(priorities) => void send("order", missionId, { kind: "set_priorities", priorities })}
-                />
-              )}
+              {open && <OrderButtons emitters={emitters} id={id} onOrder={(priorities) => void order(missionId, priorities)} />}
             </li>
           );
         })}
