@@ -24,7 +24,10 @@ beforeEach(() => {
   vi.stubGlobal(
     "ResizeObserver",
     class {
-      observe() {}
+      constructor(readonly tell: () => void) {}
+      observe() {
+        this.tell();
+      }
       disconnect() {}
     },
   );
@@ -60,4 +63,27 @@ it("plays once more from the first event when it has come to the end", () => {
   wait(500);
   expect(isPlaying()).toBe(true);
   expect(cursor.value).toBeLessThan(flown.at(-1)!.seq);
+});
+
+it("follows what happens, until somebody scrolls up in the list", () => {
+  const log = part("event-log");
+  Object.defineProperties(log, { scrollHeight: { value: 900, configurable: true }, clientHeight: { value: 100 } });
+  const bearing = flown.find(({ event }) => event.kind === "bearing_measured")!;
+  const more = () =>
+    act(() => {
+      const { events } = live.value;
+      live.value = { ...live.value, events: [...events, { ...bearing, seq: events.at(-1)!.seq + 1 }] };
+    });
+  const scroll = (to: number) => {
+    log.scrollTop = to;
+    log.dispatchEvent(new Event("scroll"));
+  };
+  more();
+  expect(log.scrollTop).toBe(900);
+  scroll(100);
+  more();
+  expect(log.scrollTop).toBe(100);
+  scroll(800);
+  more();
+  expect(log.scrollTop).toBe(900);
 });

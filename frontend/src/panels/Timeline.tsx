@@ -174,8 +174,13 @@ function jumpTo(tone: EventTone): void {
   if (next) look(next.seq);
 }
 
+/** Snapping to a whole row moves the list by less. */
+const ROW_PX = 24;
+
 function Log({ all }: { all: readonly Recorded[] }) {
   const list = useRef<HTMLOListElement>(null);
+  const settledAt = useRef(0);
+  const scrolledUp = useRef(false);
   const emitters = mission.value.spec?.emitters ?? [];
   const at = cursor.value;
   const shown = showAll.value ? all : all.filter((e) => isMain(e.event));
@@ -185,7 +190,10 @@ function Log({ all }: { all: readonly Recorded[] }) {
     if (!box) return;
     const settle = () => {
       const row = box.querySelector<HTMLElement>('[aria-current="true"]');
+      if (!row && scrolledUp.current) return;
       box.scrollTop = row ? row.offsetTop - (box.clientHeight - row.offsetHeight) / 2 : box.scrollHeight;
+      settledAt.current = box.scrollTop;
+      scrolledUp.current = false;
     };
     const resized = new ResizeObserver(settle); // tells at once, and whenever the page's size changes
     resized.observe(box);
@@ -193,8 +201,17 @@ function Log({ all }: { all: readonly Recorded[] }) {
   }, [shown.length, current, all.length === 0]);
   if (all.length === 0) return <p class="muted log-empty">{t("timeline.empty")}</p>;
   return (
-    // biome-ignore lint/a11y/noNoninteractiveTabindex: a list that scrolls must be within reach of the keyboard
-    <ol class="log" ref={list} data-testid="event-log" aria-label={t("timeline.events")} tabIndex={0}>
+    <ol
+      class="log"
+      ref={list}
+      data-testid="event-log"
+      aria-label={t("timeline.events")}
+      // biome-ignore lint/a11y/noNoninteractiveTabindex: a list that scrolls must be within reach of the keyboard
+      tabIndex={0}
+      onScroll={({ currentTarget: { scrollHeight, clientHeight, scrollTop } }) => {
+        scrolledUp.current = at === null && Math.min(settledAt.current, scrollHeight - clientHeight) - scrollTop > ROW_PX;
+      }}
+    >
       {shown.map((recorded) => (
         <li key={recorded.seq} aria-current={recorded.seq === current ? "true" : undefined}>
           <button
