@@ -8,6 +8,7 @@ import { chosenCard, drawersCard } from "../state/card";
 import { source } from "../state/connection";
 import { emitterName } from "../state/emitterName";
 import { inFlight } from "../state/mission";
+import { liveMission } from "../state/moment";
 import { mission } from "../state/shown";
 import { parsePlace } from "../units/parsePlace";
 import { formatBearing, formatNumber } from "../units/quantities";
@@ -55,7 +56,7 @@ export function recordingForm(given: FormData): FormData | string {
 
 /** On a phone that has chosen no card, what the file brings must not put another over what is said of it. */
 export async function submit(missionId: string, element: HTMLFormElement): Promise<void> {
-  chosenCard.value = drawersCard(mission.value.phase);
+  chosenCard.value = drawersCard(liveMission.value.phase);
   const form = recordingForm(new FormData(element));
   if (typeof form === "string") {
     outcome.value = { missionId, problem: localProblem(t("recording.title"), form) };
@@ -121,7 +122,7 @@ function WhichEmitter() {
 }
 
 export function ImportRecording() {
-  const { missionId, phase } = mission.value;
+  const { missionId, phase } = liveMission.value;
   if (!missionId || inFlight(phase) || !source.value?.keptByServer) return null;
   const now = outcome.value?.missionId === missionId ? outcome.value : null;
   const busy = now !== null && "busy" in now;
