@@ -6,7 +6,7 @@ import { type MessageKey, personName, reasonRemedy, reasonText, t } from "../i18
 import { alertRank, isOpen, sortAlerts } from "../state/alerts";
 import { shownCraftAlerts } from "../state/craftAlerts";
 import type { Alert } from "../state/mission";
-import { liveMission } from "../state/moment";
+import { cursor, liveMission } from "../state/moment";
 import { overlay, toggle } from "../state/overlay";
 import { change, settings } from "../state/settings";
 import { mission, shownTimeMs } from "../state/shown";
@@ -15,8 +15,9 @@ import { ProblemNote } from "./ProblemNote";
 
 const all = computed(() => [...mission.value.alerts, ...shownCraftAlerts.value]);
 const open = computed(() => all.value.filter(isOpen));
-/** Of the mission: what a craft without one says nobody acknowledges, it goes by itself. */
-const acknowledgeable = ({ id }: Alert) => mission.value.alerts.some((alert) => alert.id === id);
+/** Of the mission while it lasts: what a craft without one says nobody acknowledges, it goes by itself. */
+const acknowledgeable = ({ id }: Alert) =>
+  cursor.value === null && !mission.value.ended && mission.value.alerts.some((alert) => alert.id === id);
 const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
 
 function AlertRow({ alert }: { alert: Alert }) {

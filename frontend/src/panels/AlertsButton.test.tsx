@@ -1,0 +1,50 @@
+// @vitest-environment happy-dom
+import { render } from "preact";
+import { act } from "preact/test-utils";
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { FakeSource } from "../sources/fakeSource";
+import { live } from "../state/connection";
+import { missionAt } from "../state/mission";
+import { look } from "../state/moment";
+import { open } from "../state/open";
+import type { MissionEvent } from "../wire";
+import { ended, phase, record, someReason, someSpec, started } from "../wire/examples";
+import { AlertBanner } from "./AlertsButton";
+
+const raised: MissionEvent = {
+  kind: "alert_raised",
+  alert_id: "a",
+  topic: "battery",
+  craft_id: null,
+  emitter_id: null,
+  level: "warning",
+  reason: someReason,
+};
+
+/** How many buttons stand on the banner. */
+function offered(seq: number | null, ...after: MissionEvent[]): number {
+  const all = record({ kind: "mission_drafted", spec: someSpec() }, started(), raised, phase("flying"), ...after);
+  open(new FakeSource());
+  live.value = { ...live.value, mission: missionAt(all, Number.POSITIVE_INFINITY), events: all };
+  look(seq);
+  act(() => render(<AlertBanner />, document.body));
+  expect(document.querySelector("[data-testid=alert-banner]")).not.toBeNull();
+  return document.querySelectorAll("button").length;
+}
+
+beforeEach(() => {
+  const silent = { observe: () => {}, disconnect: () => {} };
+  vi.stubGlobal("ResizeObserver", function ResizeObserver() {
+    return silent;
+  });
+});
+afterEach(() => {
+  act(() => render(null, document.body));
+  vi.unstubAllGlobals();
+});
+
+it("lets an alert be acknowledged while the flight lasts, not when it is looked back at", () => {
+  expect(offered(null)).toBe(1);
+  expect(offered(3)).toBe(0);
+  expect(offered(null, ended("aborted"))).toBe(0);
+});
