@@ -13,7 +13,7 @@ import { readRecording, replays } from "../sources/replay";
 import { upload } from "../sources/upload";
 import { ANY, asQuery, type Filter, type Library, withFirstPage, withNextPage } from "../state/library";
 import { isOver } from "../state/mission";
-import { go, missionAddress } from "../state/route";
+import { go, missionAddress, route } from "../state/route";
 import { me } from "../state/session";
 import { change, settings } from "../state/settings";
 import { toneOfMission } from "../state/tone";
@@ -143,7 +143,7 @@ function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }
     setShare(0);
     try {
       const brought = await upload<MissionBrought>("/bundles", file, setShare, "application/zip");
-      go(missionAddress(brought.mission_id));
+      if (route.peek().page === "missions") go(missionAddress(brought.mission_id));
     } catch (error) {
       onProblem(asProblem(error));
       setShare(null);
@@ -178,6 +178,7 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
         accept=".json,application/json"
         onChange={(e) => {
           const file = e.currentTarget.files?.[0];
+          e.currentTarget.value = ""; // a file that was mended can be chosen again
           if (!file) return;
           const opened = file.text().then((text) => readRecording(text));
           opened.then(
