@@ -141,6 +141,7 @@ export function ComparePage({ route }: { route: Extract<Route, { page: "compare"
   const ids = route.missionIds.join("/");
   useEffect(() => {
     let current = true;
+    setProblem(null);
     Promise.all(route.missionIds.map(courses)).then(
       (all) => current && setFound(all),
       (error: unknown) => current && setProblem(asProblem(error)),

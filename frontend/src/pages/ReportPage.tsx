@@ -215,6 +215,7 @@ export function ReportPage({ route }: { route: Extract<Route, { page: "report" }
   const ids = route.missionIds.join("/");
   useEffect(() => {
     let current = true;
+    setProblem(null);
     const read = async (id: string): Promise<Told> => {
       const events = await api.events(id);
       return { id, events, mission: missionAt(events, Number.POSITIVE_INFINITY) };

@@ -1,0 +1,38 @@
+// @vitest-environment happy-dom
+import { type JSX, render } from "preact";
+import { act } from "preact/test-utils";
+import { afterEach, expect, it, vi } from "vitest";
+import * as api from "../sources/api";
+import * as coursesApi from "../sources/coursesApi";
+import { flown } from "../wire/examples";
+import { ComparePage } from "./ComparePage";
+import { ReportPage } from "./ReportPage";
+
+const open = async (page: JSX.Element) => {
+  act(() => render(page, document.body));
+  await act(() => new Promise((resolve) => setTimeout(resolve)));
+};
+const problems = () => document.querySelectorAll(".problem").length;
+
+afterEach(() => act(() => render(null, document.body)));
+
+it("reports a mission without the failure of another", async () => {
+  vi.spyOn(api, "events")
+    .mockRejectedValueOnce(new Error("no server"))
+    .mockResolvedValueOnce([...flown]);
+  await open(<ReportPage route={{ page: "report", missionIds: ["nope"] }} />);
+  expect(problems()).toBe(1);
+  await open(<ReportPage route={{ page: "report", missionIds: ["m"] }} />);
+  expect(problems()).toBe(0);
+});
+
+it("compares missions without a failure that is over", async () => {
+  vi.spyOn(api, "missions").mockReturnValue(new Promise(() => undefined));
+  vi.spyOn(coursesApi, "courses")
+    .mockRejectedValueOnce(new Error("no server"))
+    .mockResolvedValueOnce({ mission_id: "m", name: "hare", ended_s: 1, courses: [] } as never);
+  await open(<ComparePage route={{ page: "compare", missionIds: ["nope"] }} />);
+  expect(problems()).toBe(1);
+  await open(<ComparePage route={{ page: "compare", missionIds: ["m"] }} />);
+  expect(problems()).toBe(0);
+});
