@@ -11,6 +11,8 @@ import { sendUrgent, urgent } from "./urgent";
 const M: Flown = { id: "m", craftId: "c", phase: "flying" };
 
 let source: FakeSource;
+const slowly = () => new Promise<typeof accepted>((resolve) => setTimeout(() => resolve(accepted), 500));
+const kinds = () => source.sent.map((s) => s.kind);
 beforeEach(() => {
   vi.useFakeTimers();
   source = new FakeSource();
@@ -58,17 +60,70 @@ it("is not sent again after a refusal, whose reason stands at the bar", async ()
 });
 
 it("is under way once: a second press waits for the first, another command does not", async () => {
-  source.answer = () => new Promise(() => undefined);
+  source.answer = slowly;
   void sendUrgent(M, "abort");
   void sendUrgent(M, "abort");
   void sendUrgent(M, "hold");
-  expect(source.sent.map((s) => s.kind)).toEqual(["abort", "hold"]);
+  expect(kinds()).toEqual(["abort", "hold"]);
   expect(Object.keys(urgent.value)).toEqual(["abort", "hold"]);
-  urgent.value = {};
 });
 
 it("reaches a craft that flies for no mission, which has none to abort", async () => {
   const loose: Flown = { id: null, craftId: "c", phase: "hold" };
   for (const kind of ["hold", "return", "land", "abort"] as const) void sendUrgent(loose, kind);
   expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["craft c hold", "craft c return", "craft c land"]);
+});
+
+it("is not tried again after a newer one, which counts instead", async () => {
+  source.answer = () => Promise.reject(unreachable("no link"));
+  void sendUrgent(M, "return");
+  await vi.advanceTimersByTimeAsync(350);
+  void sendUrgent({ ...M, id: null }, "hold");
+  expect(Object.keys(urgent.value)).toEqual(["hold"]);
+  source.answer = () => Promise.resolve(accepted);
+  await vi.advanceTimersByTimeAsync(3_000);
+  expect(kinds()).toEqual(["return", "hold", "hold"]);
+});
+
+it("can be given anew after another that replaced it", async () => {
+  source.answer = () => Promise.reject(unreachable("no link"));
+  for (const kind of ["return", "hold", "return"] as const) void sendUrgent(M, kind);
+  await vi.advanceTimersByTimeAsync(800);
+  expect(kinds()).toEqual(["return", "hold", "return", "return"]);
+  expect(source.sent[0]!.commandId).not.toBe(source.sent[3]!.commandId);
+  expect(urgent.value).toEqual({ return: { stage: "retrying", count: 1 } });
+  source.answer = () => Promise.resolve(accepted);
+});
+
+it("goes out once more when an older one was carried out after it", async () => {
+  source.answer = slowly;
+  void sendUrgent(M, "return");
+  source.answer = () => Promise.resolve(accepted);
+  void sendUrgent(M, "hold");
+  await vi.advanceTimersByTimeAsync(600);
+  expect(kinds()).toEqual(["return", "hold", "hold"]);
+});
+
+it("is never ended where it aborts, and an abort ends older ones once it is accepted", async () => {
+  source.answer = () => Promise.reject(unreachable("no link"));
+  void sendUrgent(M, "hold");
+  void sendUrgent(M, "abort");
+  void sendUrgent(M, "land");
+  await vi.advanceTimersByTimeAsync(800);
+  expect(Object.keys(urgent.value).toSorted()).toEqual(["abort", "land"]);
+  void sendUrgent(M, "hold");
+  source.answer = () => Promise.resolve(accepted);
+  await vi.advanceTimersByTimeAsync(800);
+  expect(Object.keys(urgent.value).toSorted()).toEqual(["abort", "hold"]);
+});
+
+it("of one craft is not ended, nor kept back, by one of another", async () => {
+  source.answer = () => Promise.reject(unreachable("no link"));
+  void sendUrgent(M, "return");
+  const other: Flown = { id: "n", craftId: "d", phase: "flying" };
+  void sendUrgent(other, "return");
+  void sendUrgent(other, "hold");
+  source.answer = () => Promise.resolve(accepted);
+  await vi.advanceTimersByTimeAsync(800);
+  expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["m return", "n return", "n hold", "m return", "n hold"]);
 });
