@@ -65,7 +65,7 @@ it("goes on with what it has where the browser keeps nothing more", async () => 
   });
   vi.stubGlobal("fetch", () => Promise.reject(new TypeError("no link")));
   report("m", BEARING);
-  report("m", BEARING);
+  report("m", { ...BEARING, bearing_deg: 90 });
   await sendWaiting();
   expect(pending(queue.value)).toBe(2);
 });
@@ -98,4 +98,38 @@ it("asks who is signed in before it sends what an earlier page left", async () =
   });
   await sendWaiting();
   expect([asked.length, queue.value[0]!.stage]).toEqual([1, "waiting"]);
+});
+
+it("counts a bearing once that a thumb sends twice", () => {
+  vi.stubGlobal("fetch", () => Promise.reject(new TypeError("no link")));
+  vi.useFakeTimers();
+  report("m", BEARING);
+  report("m", { ...BEARING, place: { lat: 50.60001, lon: 7.2 }, bearing_deg: 12.4 });
+  expect(queue.value).toHaveLength(1);
+  report("m", { ...BEARING, emitter_id: "b" });
+  report("other", BEARING);
+  expect(queue.value).toHaveLength(3);
+  vi.advanceTimersByTime(3000);
+  report("m", BEARING);
+  expect(queue.value).toHaveLength(4);
+  vi.useRealTimers();
+});
+
+const OVER = { status: 409, title: "Conflict", detail: "The search is over." };
+const UNKNOWN = { status: 422, title: "Wrong", detail: "No such bearing.", reason: { code: "no_such_bearing" } };
+
+it.each([
+  ["counts still, and says why, where the server does not take it back", OVER, true, "sent", OVER.detail],
+  ["is refused where it did not arrive in time either", OVER, false, "refused", OVER.detail],
+  ["is back where the server never had it", UNKNOWN, true, "back", null],
+])("%s", async (_name, no, arrived, stage, problem) => {
+  const answer = (body: object, status: number) =>
+    new Response(JSON.stringify(body), { status, headers: { "content-type": "application/problem+json" } });
+  vi.stubGlobal("fetch", async (_path: string, { method }: RequestInit) =>
+    method === "POST" && arrived ? answer({ already: true }, 200) : answer(no, no.status),
+  );
+  session.value = signedIn("Ben");
+  queue.value = [of("a", "withdrawing")];
+  await sendWaiting();
+  expect(queue.value[0]).toMatchObject({ stage, problem });
 });

@@ -3,11 +3,15 @@ import { computed, signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
 import { RequestFailed } from "../sources/problem";
 import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } from "../sources/reportsApi";
-import { add, answered, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
+import { add, answered, lastOf, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
 import { me, refreshSession, session } from "../state/session";
 
 const KEY = "crossfix.bearings";
 const AGAIN_MS = 4000;
+const TWICE_MS = 2000;
+const TWICE_DEG = 2;
+
+type Told = Omit<BearingReport, "bearing_id" | "taken_at_utc">;
 
 function stored(): string | null {
   try {
@@ -50,13 +54,20 @@ const refused = (error: unknown): string | null =>
     ? error.problem.detail || error.problem.title
     : null;
 
+const isUnknown = (error: unknown) =>
+  error instanceof RequestFailed && (error.problem.status === 404 || error.problem.reason?.code === "no_such_bearing");
+
 async function say({ missionId, report, stage }: Queued): Promise<void> {
   const id = report.bearing_id;
   if (stage === "withdrawing") {
-    await takeBackBearing(missionId, id).catch((error: unknown) => {
-      if (refused(error) === null) throw error;
-    });
-    change((now) => withdrawn(now, id));
+    try {
+      await takeBackBearing(missionId, id);
+      change((now) => withdrawn(now, id));
+    } catch (error) {
+      const why = refused(error);
+      if (why === null) throw error;
+      change((now) => withdrawn(now, id, isUnknown(error) ? null : why));
+    }
     return;
   }
   try {
@@ -89,7 +100,16 @@ export async function sendWaiting(): Promise<void> {
   }
 }
 
-export function report(missionId: string, bearing: Omit<BearingReport, "bearing_id" | "taken_at_utc">): void {
+/** A thumb's second tap, while compass and place may have moved a little. */
+function isTwice({ report: { taken_at_utc, ...last } }: Queued, bearing: Told): boolean {
+  const alike =
+    last.by === bearing.by && last.emitter_id === bearing.emitter_id && Math.abs(last.bearing_deg - bearing.bearing_deg) < TWICE_DEG;
+  return alike && Math.abs(Date.now() - Date.parse(taken_at_utc ?? "")) < TWICE_MS;
+}
+
+export function report(missionId: string, bearing: Told): void {
+  const last = lastOf(queue.peek(), missionId, reporting.peek());
+  if (last && isTwice(last, bearing)) return;
   const taken = { ...bearing, bearing_id: newCommandId(), taken_at_utc: new Date().toISOString() };
   change((now) => add(now, missionId, taken, reporting.peek() ?? undefined));
   void sendWaiting();

@@ -45,8 +45,9 @@ export function answered(queue: Queue, bearingId: string, problem: string | null
   return change(queue, bearingId, problem === null ? { stage: "sent" } : { stage: "refused", problem });
 }
 
-/** It is taken back at the server, or was never there. */
-export const withdrawn = (queue: Queue, bearingId: string): Queue => change(queue, bearingId, { stage: "back" });
+/** null: it is taken back at the server, or was never there. Else why not: it is sent again, which tells whether it counts. */
+export const withdrawn = (queue: Queue, bearingId: string, problem: string | null = null): Queue =>
+  change(queue, bearingId, { stage: problem === null ? "back" : "waiting", problem });
 
 /** One that the server may never have had is sent once more: what it has already, it does not count twice. */
 export const restore = (queue: Queue, bearingId: string): Queue =>
@@ -59,7 +60,7 @@ export const lastOf = (queue: Queue, missionId: string, name?: string | null): Q
 /** "Backspace". One that may have reached the server although it never answered is withdrawn there as well. */
 export function takeBackLast(queue: Queue, missionId: string, name?: string | null): Queue {
   const last = lastOf(queue, missionId, name);
-  return last ? change(queue, last.report.bearing_id, { stage: "withdrawing" }) : queue;
+  return last ? change(queue, last.report.bearing_id, { stage: "withdrawing", problem: null }) : queue;
 }
 
 /** What is to be said to the server next, the oldest first; another's waits until they are signed in again. */
