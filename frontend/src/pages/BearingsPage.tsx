@@ -1,4 +1,5 @@
 // For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
+import type { TargetedEvent } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { backspace, countAgain, keepSending, queue, report, reporting, unreached } from "../commands/reportBearings";
 import { asProblem } from "../commands/send";
@@ -12,7 +13,7 @@ import { advised, advisedWay } from "../state/advice";
 import { isOwn, lastOf, pending, type Stage } from "../state/bearingQueue";
 import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
-import { emittersThen } from "../state/moment";
+import { emittersThen, look } from "../state/moment";
 import { compassState, magneticDeg, startCompass, stopCompass } from "../state/phoneCompass";
 import { missionAddress } from "../state/route";
 import { me } from "../state/session";
@@ -66,26 +67,46 @@ const stageWords = (stage: Stage, problem: string | null, silent: boolean): stri
       : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
 
 function useGps(onPlace: (at: LonLat) => void) {
-  const [state, setState] = useState<"off" | "asking" | "on" | "denied">("off");
+  // silent: it does not know just now, and is still asked
+  const [state, setState] = useState<"off" | "asking" | "on" | "silent" | "denied">("off");
   const [accuracy, setAccuracy] = useState<number | null>(null);
+  const asked = state !== "off" && state !== "denied";
   useEffect(() => {
-    if (state !== "asking" && state !== "on") return;
+    if (!asked) return;
     const watch = navigator.geolocation?.watchPosition(
       ({ coords }) => {
         setState("on");
         setAccuracy(coords.accuracy);
         onPlace([coords.longitude, coords.latitude]);
       },
-      () => setState("denied"),
+      ({ code, PERMISSION_DENIED }) => setState(code === PERMISSION_DENIED ? "denied" : "silent"),
       { enableHighAccuracy: true, maximumAge: 2000 },
     );
     if (watch === undefined) setState("denied");
     return () => {
       if (watch !== undefined) navigator.geolocation.clearWatch(watch);
     };
-  }, [state === "asking" || state === "on"]);
+  }, [asked]);
   return { state, accuracy, start: () => setState("asking"), stop: () => setState("off") };
 }
+
+/** Of a field: what is typed stands, whatever is drawn meanwhile, until the field is left or its value comes from elsewhere. */
+function useTyped<T>(value: T, words: string, read: (text: string) => T, onRead: (value: T) => void) {
+  const [typed, setTyped] = useState<{ text: string; value: T } | null>(null);
+  return {
+    value: typed?.value === value ? typed.text : words,
+    onInput: ({ currentTarget: { value: text } }: TargetedEvent<HTMLInputElement>) => {
+      setTyped({ text, value: read(text) });
+      onRead(read(text));
+    },
+    onBlur: () => setTyped(null),
+  };
+}
+
+const bearingIn = (text: string): number | null => {
+  const degrees = Number(text.replace(",", "."));
+  return text.trim() === "" || !Number.isFinite(degrees) ? null : turned(degrees);
+};
 
 function Pick<T extends string>({
   name,
@@ -176,6 +197,8 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const [emitter, setEmitter] = useState<string | null>(null);
   const who = useRef<HTMLDetailsElement>(null);
   const gps = useGps(setHere);
+  useEffect(() => void (gps.state === "denied" && setMode("here")), [gps.state]);
+  useEffect(() => look(null), []);
   useEffect(() => keepSending(), []);
   useEffect(() => stopCompass, []);
   const emitters = spec?.emitters ?? [];
@@ -187,6 +210,21 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
     setReporter(next);
     keepReporter(next);
   };
+  const typedDirection = useTyped(
+    direction,
+    direction === null ? "" : String(Math.round(direction) % 360).padStart(3, "0"),
+    bearingIn,
+    (degrees) => {
+      stopCompass();
+      setBearing(degrees);
+    },
+  );
+  const typedDeclination = useTyped(
+    reporter.declination,
+    String(reporter.declination),
+    (text) => Number(text.replace(",", ".")) || 0,
+    (declination) => change({ declination }),
+  );
   const signedIn = me.value?.name ?? null;
   const named = signedIn !== null || reporter.name.trim() !== "";
   const ready = here !== null && direction !== null && named && heard !== null && ended === null;
@@ -248,12 +286,16 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           type="button"
           data-testid="report-gps"
           aria-pressed={gps.state === "on"}
-          onClick={gps.state === "on" ? gps.stop : gps.start}
+          onClick={() => {
+            if (gps.state === "on") return gps.stop();
+            setMode("direction");
+            gps.start();
+          }}
         >
           {gps.state === "on" && gps.accuracy !== null ? t("report.gpsOn", { metres: Math.round(gps.accuracy) }) : t("report.gps")}
         </button>
       </fieldset>
-      {gps.state === "denied" && <p role="alert">{t("report.gpsDenied")}</p>}
+      {(gps.state === "denied" || gps.state === "silent") && <p role="alert">{t("report.gpsDenied")}</p>}
       <AdviceCard missionId={missionId} here={here} />
       <fieldset class="report-row">
         <legend>{t("report.hear")}</legend>
@@ -285,17 +327,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         </button>
         <label>
           <span class="visually-hidden">{t("report.direction")}</span>
-          <input
-            inputMode="numeric"
-            data-testid="report-direction"
-            placeholder="000"
-            value={direction === null ? "" : String(Math.round(direction) % 360).padStart(3, "0")}
-            onChange={(e) => {
-              const typed = Number(e.currentTarget.value.replace(",", "."));
-              stopCompass();
-              setBearing(e.currentTarget.value.trim() === "" || !Number.isFinite(typed) ? null : turned(typed));
-            }}
-          />
+          <input inputMode="numeric" data-testid="report-direction" placeholder="000" {...typedDirection} />
           <span>° {t("report.trueNorth")}</span>
         </label>
         <button
@@ -348,11 +380,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         )}
         <label>
           {t("report.declination")}
-          <input
-            inputMode="decimal"
-            value={String(reporter.declination)}
-            onChange={(e) => change({ declination: Number(e.currentTarget.value.replace(",", ".")) || 0 })}
-          />
+          <input inputMode="decimal" {...typedDeclination} />
         </label>
       </details>
       <WaysCard missionId={missionId} />
@@ -364,7 +392,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         <button
           type="button"
           data-testid="report-back"
-          disabled={!lastOf(queue.value, missionId, reporting.value)}
+          disabled={ended !== null || !lastOf(queue.value, missionId, reporting.value)}
           onClick={() => backspace(missionId)}
         >
           ⌫ {t("report.back")}
