@@ -4,6 +4,7 @@ import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { askAdvice } from "../sources/adviceApi";
 import { advice, adviceFreshness } from "../state/advice";
+import { source } from "../state/connection";
 import { settings } from "../state/settings";
 import { mission, shownTimeMs } from "../state/shown";
 import { formatAge, formatBearing, formatDuration, formatLength } from "../units/quantities";
@@ -70,7 +71,7 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
     setBusy(true);
     setProblem(null);
     try {
-      advice.value = await askAdvice(
+      const given = await askAdvice(
         missionId,
         { lon: here[0], lat: here[1] },
         SPEED[going],
@@ -78,6 +79,7 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
         going === "hopping",
         going !== "walking",
       );
+      if (source.peek()?.missionId === missionId) advice.value = given;
     } catch (error) {
       setProblem(asProblem(error));
     } finally {

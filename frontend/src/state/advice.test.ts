@@ -1,5 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { freshness } from "./advice";
+import { FakeSource } from "../sources/fakeSource";
+import { advice, freshness } from "./advice";
+import { open } from "./open";
 
 const given = {
   emitter_id: "a",
@@ -34,5 +36,11 @@ describe("advice", () => {
   it("is outrun by a bearing that came, or was taken back", () => {
     expect(freshness(given, 3, later(1))).toBe("outrun");
     expect(freshness(given, 1, later(1))).toBe("outrun");
+  });
+  it("is of one search, and forgotten when another opens", () => {
+    open(new FakeSource("m"));
+    advice.value = given;
+    open(new FakeSource("other"));
+    expect(advice.value).toBeNull();
   });
 });

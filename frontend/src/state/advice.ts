@@ -1,11 +1,17 @@
 // The advice asked for last, and whether it still holds: nobody has to follow it, and bearings outrun it.
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import type { Advice } from "../sources/adviceApi";
 import type { LonLat } from "../wire/beliefFrame";
+import { source } from "./connection";
 import { emittersThen } from "./moment";
 import { shownTimeMs } from "./shown";
 
+/** Of the mission shown. */
 export const advice = signal<Advice | null>(null);
+effect(() => {
+  void source.value;
+  advice.value = null;
+});
 
 /** So many times as long as the way takes, and a little more, it is good. */
 const GOOD_FOR = 2;
