@@ -54,11 +54,7 @@ function Written({ onDone }: { onDone: () => void }) {
         type="button"
         data-testid="truth-set"
         disabled={!place}
-        onClick={() => {
-          void tell(place, "typed");
-          setText("");
-          onDone();
-        }}
+        onClick={() => void tell(place, "typed").then((taken) => taken && onDone())}
       >
         {t("truth.set")}
       </button>
