@@ -8,7 +8,7 @@ import type { Supposition } from "../sources/coursesApi";
 import { momentSeq } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
-import { flownBearings, flownLegs, supposed, supposedHere } from "../state/supposed";
+import { countedThen, flownBearings, supposed, supposedHere } from "../state/supposed";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
@@ -173,7 +173,7 @@ async function supposition(): Promise<Supposition> {
 export function WhatIfPanel() {
   const [asking, setAsking] = useState(false);
   const [problem, setProblem] = useState<Problem | null>(null);
-  const { missionId, spec } = mission.value;
+  const { missionId, spec, emitterId } = mission.value;
   const counted = flownBearings.value.length;
   const shown = supposedHere.value;
   if (!missionId || !spec) return null;
@@ -181,9 +181,10 @@ export function WhatIfPanel() {
     setAsking(true);
     setProblem(null);
     try {
-      const [legs, until] = [flownLegs.value, momentSeq.value];
-      const answer = await api.whatIf(missionId, { ...(await supposition()), bearings: counted, until });
-      supposed.value = { missionId, bearings: counted, legs, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
+      const asked = { missionId, counted: countedThen.value };
+      const until = momentSeq.value;
+      const answer = await api.whatIf(missionId, { ...(await supposition()), emitter_id: emitterId, bearings: counted, until });
+      supposed.value = { ...asked, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
     } catch (error) {
       setProblem(asProblem(error));
     } finally {

@@ -6,9 +6,8 @@ import { cursor, happened } from "./moment";
 
 export interface Supposed {
   missionId: string;
-  /** Counted bearings after which the decision is taken, and legs. */
-  bearings: number;
-  legs: number;
+  /** What counted when the decision was taken. */
+  counted: string;
   answer: WhatIf;
   frame: BeliefFrame;
 }
@@ -18,13 +17,15 @@ export const supposed = signal<Supposed | null>(null);
 /** The bearings that count at the moment shown, as they were flown. */
 export const flownBearings = computed(() => happened.value.bearings.filter((b) => !b.excluded).map((b) => b.fact));
 
-/** The legs that count then. */
-export const flownLegs = computed(() => happened.value.ways.filter((w) => !w.excluded).length);
+/** By their ids, the bearings and legs that count then. */
+export const countedThen = computed(() =>
+  [...flownBearings.value.map((b) => b.bearing_id), ...happened.value.ways.filter((w) => !w.excluded).map((w) => w.fact.leg_id)].join(),
+);
 
-/** Only in the review, only for the emitter asked about, and only where as many bearings and legs count as the question had. */
+/** Only in the review, only for the emitter asked about, and only where the same bearings and legs count. */
 export const supposedHere = computed<Supposed | null>(() => {
   const what = supposed.value;
   if (!what || cursor.value === null || what.missionId !== happened.value.missionId) return null;
   if (what.answer.belief.emitter_id !== happened.value.emitterId) return null;
-  return flownBearings.value.length === what.bearings && flownLegs.value === what.legs ? what : null;
+  return countedThen.value === what.counted ? what : null;
 });
