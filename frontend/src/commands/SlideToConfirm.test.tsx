@@ -2,7 +2,9 @@
 import { render } from "preact";
 import { act } from "preact/test-utils";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { localProblem } from "../sources/problem";
 import { EXPIRES_S, HOLD_MS, SlideToConfirm } from "./SlideToConfirm";
+import { problems, report } from "./send";
 
 const onConfirm = vi.fn();
 const onCancel = vi.fn();
@@ -93,6 +95,21 @@ describe("held by the space bar", () => {
     wait(2 * HOLD_MS);
     expect(onConfirm).not.toHaveBeenCalled();
   });
+});
+
+it("can be drawn again after the order failed, and only then", () => {
+  onConfirm.mockImplementationOnce(() => report("plan", null));
+  report("bar", localProblem("no link", ""));
+  show();
+  drag(1);
+  wait(1_000);
+  drag(1);
+  expect(onConfirm).toHaveBeenCalledOnce();
+  act(() => report("plan", localProblem("no link", "")));
+  expect(slide().getAttribute("aria-valuenow")).toBe("0");
+  drag(1);
+  expect(onConfirm).toHaveBeenCalledTimes(2);
+  problems.value = {};
 });
 
 it("goes away with Escape, and by itself when it is left alone", () => {

@@ -1,6 +1,7 @@
 // Slide, or hold the space bar for 1.5 s, to confirm. Expires when it is left alone.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { t } from "../i18n";
+import { problems } from "./send";
 
 export const HOLD_MS = 1500;
 export const EXPIRES_S = 20;
@@ -24,13 +25,24 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
   const holding = useRef<number | null>(null);
   const heldSince = useRef<number | null>(null);
   const confirmed = useRef(false);
+  /** The problems that there were before it was sent. */
+  const before = useRef(0);
 
   const confirm = () => {
     if (confirmed.current) return;
     confirmed.current = true;
     setPosition(1);
     onConfirm();
+    before.current = Object.keys(problems.peek()).length;
   };
+
+  // a slide that is still there when the order failed can be drawn again
+  useEffect(() => {
+    if (!confirmed.current || Object.keys(problems.value).length <= before.current) return;
+    confirmed.current = false;
+    setPosition(0);
+    setLeft(expiresS);
+  }, [problems.value]);
 
   useEffect(() => track.current?.focus({ preventScroll: true }), []);
 

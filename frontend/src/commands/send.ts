@@ -11,6 +11,13 @@ export type Desk = "bar" | "control" | "plan" | "proposal" | "start" | "sweep" |
 
 export const problems = signal<Partial<Record<Desk, Problem>>>({});
 
+/** What was refused in one mission says nothing of another, but the bar speaks of what flies. */
+effect(() => {
+  void source.value;
+  const { bar } = problems.peek();
+  problems.value = bar ? { bar } : {};
+});
+
 export function report(desk: Desk, problem: Problem | null): void {
   const { [desk]: _old, ...others } = problems.value;
   problems.value = problem ? { ...others, [desk]: problem } : others;
@@ -55,12 +62,14 @@ export async function send(desk: Desk, missionId: string, command: Command): Pro
   const from = source.peek();
   if (!from) return false;
   report(desk, null);
+  let problem: Problem;
   try {
     const reply = await steered(from, missionId, command);
     if (reply.accepted) return true;
-    report(desk, refusal(reply.reason));
+    problem = refusal(reply.reason);
   } catch (error) {
-    report(desk, asProblem(error));
+    problem = asProblem(error);
   }
+  if (desk === "bar" || source.peek() === from) report(desk, problem);
   return false;
 }
