@@ -16,14 +16,19 @@ const problems = () => document.querySelectorAll(".problem").length;
 
 afterEach(() => act(() => render(null, document.body)));
 
-it("reports a mission without the failure of another", async () => {
+it("reports a mission without the failure of another, and a failure without another mission", async () => {
   vi.spyOn(api, "events")
     .mockRejectedValueOnce(new Error("no server"))
-    .mockResolvedValueOnce([...flown]);
+    .mockResolvedValueOnce([...flown])
+    .mockRejectedValueOnce(new Error("no server"));
   await open(<ReportPage route={{ page: "report", missionIds: ["nope"] }} />);
   expect(problems()).toBe(1);
   await open(<ReportPage route={{ page: "report", missionIds: ["m"] }} />);
   expect(problems()).toBe(0);
+  expect(document.querySelector("[data-testid=report-mission]")).not.toBeNull();
+  await open(<ReportPage route={{ page: "report", missionIds: ["nope"] }} />);
+  expect(problems()).toBe(1);
+  expect(document.querySelector("[data-testid=report-mission]")).toBeNull();
 });
 
 it("compares missions without a failure that is over", async () => {

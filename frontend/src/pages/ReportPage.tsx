@@ -216,6 +216,7 @@ export function ReportPage({ route }: { route: Extract<Route, { page: "report" }
   useEffect(() => {
     let current = true;
     setProblem(null);
+    setTold(null);
     const read = async (id: string): Promise<Told> => {
       const events = await api.events(id);
       return { id, events, mission: missionAt(events, Number.POSITIVE_INFINITY) };

@@ -292,7 +292,7 @@ export function Timeline() {
           <select
             data-testid="pace"
             aria-label={t("timeline.pace")}
-            value={pace}
+            value={pace.value}
             onChange={(e) => {
               pace.value = Number(e.currentTarget.value);
               if (speed !== null) play(pace.value);
