@@ -5,7 +5,7 @@ import type { EmitterSpec } from "../wire";
 import { change, draft } from "./draft";
 import { EMITTER, firstEmitter } from "./emitter";
 import { Message } from "./FormField";
-import { typedNumber } from "./fields";
+import { shownValue, typedNumber } from "./fields";
 import { useTyped } from "./typed";
 
 type Name = "pulse_period_s" | "pulse_width_s" | "pulse_jitter_s";
@@ -13,7 +13,7 @@ type Name = "pulse_period_s" | "pulse_width_s" | "pulse_jitter_s";
 function PulseNumber({ name, label, failed }: { name: Name; label: MessageKey; failed: RequestFailed | null }) {
   const path = `${EMITTER}.${name}`;
   const id = `field-${path.replaceAll(".", "-")}`;
-  const { input, isWrong } = useTyped(path, String(firstEmitter(draft.value!.spec)[name]), typedNumber, (value) => {
+  const { input, isWrong } = useTyped(path, shownValue(firstEmitter(draft.value!.spec)[name], 1), typedNumber, (value) => {
     const now = draft.peek();
     if (now)
       change(
