@@ -12,12 +12,11 @@ interface Properties {
   testId: string;
   onConfirm: () => void;
   onCancel: () => void;
-  disabled?: boolean;
   /** Seconds until it goes away by itself. */
   expiresS?: number;
 }
 
-export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = false, expiresS = EXPIRES_S }: Properties) {
+export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = EXPIRES_S }: Properties) {
   const track = useRef<HTMLDivElement>(null);
   const [position, setPosition] = useState(0);
   const [left, setLeft] = useState(expiresS);
@@ -36,27 +35,6 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
     before.current = Object.keys(problems.peek()).length;
   };
 
-  // a slide that is still there when the order failed can be drawn again
-  useEffect(() => {
-    if (!confirmed.current || Object.keys(problems.value).length <= before.current) return;
-    confirmed.current = false;
-    setPosition(0);
-    setLeft(expiresS);
-  }, [problems.value]);
-
-  useEffect(() => track.current?.focus({ preventScroll: true }), []);
-
-  useEffect(() => {
-    const timer = setInterval(() => {
-      if (dragFrom.current !== null || holding.current !== null) return;
-      setLeft((seconds) => seconds - 1);
-    }, 1000);
-    return () => clearInterval(timer);
-  }, []);
-  useEffect(() => {
-    if (left <= 0 && !confirmed.current) onCancel();
-  }, [left]);
-
   const release = () => {
     if (holding.current !== null) cancelAnimationFrame(holding.current);
     holding.current = null;
@@ -64,10 +42,30 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
     dragFrom.current = null;
     if (!confirmed.current) setPosition(0);
   };
-  useEffect(() => release, []);
+  useEffect(() => {
+    track.current?.focus({ preventScroll: true });
+    const timer = setInterval(() => {
+      if (dragFrom.current === null && holding.current === null) setLeft((seconds) => seconds - 1);
+    }, 1000);
+    return () => {
+      clearInterval(timer);
+      release();
+    };
+  }, []);
+
+  // a slide that is still there when the order failed can be drawn again
+  useEffect(() => {
+    if (!confirmed.current || Object.keys(problems.value).length <= before.current) return;
+    confirmed.current = false;
+    release();
+    setLeft(expiresS);
+  }, [problems.value]);
+  useEffect(() => {
+    if (left <= 0 && !confirmed.current) onCancel();
+  }, [left]);
 
   const hold = (began: number) => {
-    if (holding.current !== null || disabled) return;
+    if (holding.current !== null) return;
     heldSince.current = began;
     const step = () => {
       const share = (performance.now() - began) / HOLD_MS;
@@ -107,7 +105,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
     <div class="slide-row">
       <div
         ref={track}
-        class={`slide ${disabled ? "slide-disabled" : ""}`}
+        class="slide"
         data-testid={testId}
         role="slider"
         tabIndex={0}
@@ -115,7 +113,6 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
         aria-valuemin={0}
         aria-valuemax={100}
         aria-valuenow={Math.floor(position * 100)}
-        aria-disabled={disabled}
         onKeyDown={onKeyDown}
         onKeyUp={onKeyUp}
         onBlur={release}
@@ -131,7 +128,6 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
           class="slide-knob"
           style={{ left: `calc((100% - var(--target)) * ${position})` }}
           onPointerDown={(event) => {
-            if (disabled) return;
             event.currentTarget.setPointerCapture(event.pointerId);
             dragFrom.current = event.clientX;
           }}

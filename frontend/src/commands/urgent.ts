@@ -14,6 +14,7 @@ type InNoMission = Exclude<Urgent, "abort">;
 export interface UrgentState {
   stage: "sending" | "retrying" | "accepted";
   count: number;
+  to: string;
 }
 
 /** One entry a kind: a hold never takes the place of an abort that is still on its way. */
@@ -25,72 +26,59 @@ const SHOWN_MS = 4000;
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-function show(kind: Urgent, state: UrgentState | null): UrgentState | null {
+function show(kind: Urgent, state: UrgentState | null): void {
   const { [kind]: _old, ...others } = urgent.value;
   urgent.value = state ? { ...others, [kind]: state } : others;
-  return state;
 }
 
-type Target = Pick<Flown, "id" | "craftId">;
+/** The order that counts of those to each mission, or craft that flies for none: gives it anew. */
+const newest = new Map<string, () => void>();
 
-interface Order extends Target {
-  kind: Urgent;
-  /** A newer order to the same craft, which counts instead. */
-  instead?: Order;
+/** The trying of an older one ends, else it would be carried out after this. Nothing ends an abort. */
+function count(to: string, again: () => void): void {
+  newest.set(to, again);
+  const { abort } = urgent.peek();
+  urgent.value = abort ? { abort } : {};
 }
-
-const onTheWay = new Set<Order>();
-
-/** The last order counts: an older one that arrived after it would be carried out after it. Nothing ends an abort. */
-function replace(older: readonly Order[], instead: Order): void {
-  for (const order of older) {
-    if (order.kind === instead.kind || order.kind === "abort" || !onTheWay.delete(order)) continue;
-    order.instead = instead;
-    show(order.kind, null);
-  }
-}
-
-const lastOf = (order: Order): Order => (order.instead ? lastOf(order.instead) : order);
 
 /** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
-export async function sendUrgent({ id, craftId }: Target, kind: Urgent): Promise<void> {
-  if (id === null && kind === "abort") return;
-  const older = [...onTheWay].filter((order) => order.craftId === craftId || (id !== null && order.id === id));
-  if (urgent.peek()[kind] && older.some((order) => order.kind === kind)) return;
-  const own: Order = { id, craftId, kind };
-  // an abort may be refused where a hold is not
-  if (kind !== "abort") replace(older, own);
-  onTheWay.add(own);
+export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
+  const { id, craftId } = flown;
+  const to = id ?? craftId;
+  const underWay = urgent.peek()[kind];
+  if ((underWay?.to === to && underWay.stage !== "accepted") || (id === null && kind === "abort")) return;
   const commandId = newCommandId();
-  let shown: UrgentState | null = null;
+  const before = newest.get(to);
+  const again = () => void sendUrgent(flown, kind);
+  const counts = () => kind === "abort" || newest.get(to) === again;
+  if (kind !== "abort") count(to, again);
   report("bar", null);
-  for (let count = 0; count < GIVE_UP_AFTER && onTheWay.has(own); count++) {
-    shown = show(kind, { stage: count === 0 ? "sending" : "retrying", count });
+  for (let tries = 0; tries < GIVE_UP_AFTER && counts(); tries++) {
+    show(kind, { stage: tries === 0 ? "sending" : "retrying", count: tries, to });
     try {
-      const to = source.peek()!;
-      const reply = await (id !== null ? to.send(id, { kind }, commandId) : to.order(craftId, { kind: kind as InNoMission }, commandId));
-      if (own.instead) {
-        // it arrived after all, perhaps as the last
-        if (reply.accepted) void sendUrgent(lastOf(own), lastOf(own).kind);
+      const from = source.peek()!;
+      const reply = await (id !== null
+        ? from.send(id, { kind }, commandId)
+        : from.order(craftId, { kind: kind as InNoMission }, commandId));
+      if (!counts()) {
+        // it arrived all the same, perhaps after the one that counts
+        if (reply.accepted) newest.get(to)!();
         return;
       }
-      onTheWay.delete(own);
-      if (!reply.accepted) {
-        report("bar", refusal(reply.reason));
-        break;
-      }
-      replace(older, own);
-      report("bar", null);
-      shown = show(kind, { stage: "accepted", count });
+      report("bar", reply.accepted ? null : refusal(reply.reason));
+      if (!reply.accepted) break;
+      // an abort only now: it may be refused where a hold is not
+      if (newest.get(to) === before) count(to, again);
+      show(kind, { stage: "accepted", count: tries, to });
       await pause(SHOWN_MS);
+      break;
     } catch (error) {
-      if (own.instead) return;
+      if (!counts()) return;
       report("bar", asProblem(error));
       const refused = error instanceof RequestFailed && error.problem.status >= 400 && error.problem.status < 500;
       if (refused) break;
       await pause(RETRY_MS);
     }
   }
-  onTheWay.delete(own);
-  if (urgent.peek()[kind] === shown) show(kind, null);
+  if (counts()) show(kind, null);
 }
