@@ -3,7 +3,7 @@ import { effect, signal } from "@preact/signals";
 import { RequestFailed, refusal, unreachable } from "../sources/problem";
 import type { Source } from "../sources/source";
 import { source } from "../state/connection";
-import { controlView, fenceOf } from "../state/control";
+import { fenceOf } from "../state/control";
 import type { Command, CommandReply, Problem } from "../wire";
 
 /** Where on the page an answer belongs. */
@@ -29,6 +29,7 @@ export const asFailure = (error: unknown): RequestFailed =>
 export const asProblem = (error: unknown): Problem => asFailure(error).problem;
 
 const TAKEN_MS = 3000;
+const LOOK_MS = 50;
 
 /** When nobody controls the search, whoever orders takes control first: the order is a deliberate act already. */
 async function steered(from: Source, missionId: string, command: Command): Promise<CommandReply> {
@@ -40,21 +41,10 @@ async function steered(from: Source, missionId: string, command: Command): Promi
 }
 
 /** The change of hands comes as an event, a moment after the answer. */
-function fenceComes(missionId: string): Promise<number | null> {
-  return new Promise((resolve) => {
-    let stop: () => void = () => undefined;
-    const late = setTimeout(() => done(null), TAKEN_MS);
-    const done = (fence: number | null) => {
-      clearTimeout(late);
-      queueMicrotask(() => stop());
-      resolve(fence);
-    };
-    stop = effect(() => {
-      void controlView.value;
-      const fence = fenceOf(missionId);
-      if (fence !== null) done(fence);
-    });
-  });
+async function fenceComes(missionId: string): Promise<number | null> {
+  for (let waited = 0; waited < TAKEN_MS && fenceOf(missionId) === null; waited += LOOK_MS)
+    await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
+  return fenceOf(missionId);
 }
 
 /** True when the server accepted it; otherwise the reason stands at `desk`. */
