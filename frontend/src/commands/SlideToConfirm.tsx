@@ -23,16 +23,14 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
   const dragFrom = useRef<number | null>(null);
   const holding = useRef<number | null>(null);
   const heldSince = useRef<number | null>(null);
-  const confirmed = useRef(false);
-  /** The problems that there were before it was sent. */
-  const before = useRef(0);
+  /** Once it was sent: how many problems there were. */
+  const confirmed = useRef<number | null>(null);
 
   const confirm = () => {
-    if (confirmed.current) return;
-    confirmed.current = true;
+    if (confirmed.current !== null) return;
     setPosition(1);
     onConfirm();
-    before.current = Object.keys(problems.peek()).length;
+    confirmed.current = Object.keys(problems.peek()).length;
   };
 
   const release = () => {
@@ -40,10 +38,10 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
     holding.current = null;
     heldSince.current = null;
     dragFrom.current = null;
-    if (!confirmed.current) setPosition(0);
+    if (confirmed.current === null) setPosition(0);
   };
   useEffect(() => {
-    track.current?.focus({ preventScroll: true });
+    track.current!.focus({ preventScroll: true });
     const timer = setInterval(() => {
       if (dragFrom.current === null && holding.current === null) setLeft((seconds) => seconds - 1);
     }, 1000);
@@ -55,13 +53,13 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
 
   // a slide that is still there when the order failed can be drawn again
   useEffect(() => {
-    if (!confirmed.current || Object.keys(problems.value).length <= before.current) return;
-    confirmed.current = false;
+    if (confirmed.current === null || Object.keys(problems.value).length <= confirmed.current) return;
+    confirmed.current = null;
     release();
     setLeft(expiresS);
   }, [problems.value]);
   useEffect(() => {
-    if (left <= 0 && !confirmed.current) onCancel();
+    if (left <= 0 && confirmed.current === null) onCancel();
   }, [left]);
 
   const hold = (began: number) => {

@@ -1,5 +1,5 @@
 // Sending a command and telling what became of it, at the place where it was given.
-import { effect, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import { RequestFailed, refusal, unreachable } from "../sources/problem";
 import type { Source } from "../sources/source";
 import { source } from "../state/connection";
@@ -11,13 +11,6 @@ export type Desk = "bar" | "control" | "plan" | "proposal" | "start" | "sweep" |
 
 export const problems = signal<Partial<Record<Desk, Problem>>>({});
 
-/** What was refused in one mission says nothing of another, but the bar speaks of what flies. */
-effect(() => {
-  void source.value;
-  const { bar } = problems.peek();
-  problems.value = bar ? { bar } : {};
-});
-
 export function report(desk: Desk, problem: Problem | null): void {
   const { [desk]: _old, ...others } = problems.value;
   problems.value = problem ? { ...others, [desk]: problem } : others;
@@ -28,7 +21,7 @@ export const asFailure = (error: unknown): RequestFailed =>
 
 export const asProblem = (error: unknown): Problem => asFailure(error).problem;
 
-const TAKEN_MS = 3000;
+const LOOKS = 60;
 const LOOK_MS = 50;
 
 /** When nobody controls the search, whoever orders takes control first: the order is a deliberate act already. */
@@ -42,8 +35,7 @@ async function steered(from: Source, missionId: string, command: Command): Promi
 
 /** The change of hands comes as an event, a moment after the answer. */
 async function fenceComes(missionId: string): Promise<number | null> {
-  for (let waited = 0; waited < TAKEN_MS && fenceOf(missionId) === null; waited += LOOK_MS)
-    await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
+  for (let looks = 0; looks < LOOKS && fenceOf(missionId) === null; looks++) await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
   return fenceOf(missionId);
 }
 
@@ -52,14 +44,12 @@ export async function send(desk: Desk, missionId: string, command: Command): Pro
   const from = source.peek();
   if (!from) return false;
   report(desk, null);
-  let problem: Problem;
   try {
     const reply = await steered(from, missionId, command);
     if (reply.accepted) return true;
-    problem = refusal(reply.reason);
+    report(desk, refusal(reply.reason));
   } catch (error) {
-    problem = asProblem(error);
+    report(desk, asProblem(error));
   }
-  if (desk === "bar" || source.peek() === from) report(desk, problem);
   return false;
 }
