@@ -1,11 +1,11 @@
 // The mission as map features. Pure: the same for a live mission, a review and a recording.
 
 import type { MissionWays } from "../sources/waysApi";
-import { marginOutline } from "../state/areas";
 import { rankCandidates, roundShade } from "../state/candidates";
 import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
 import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
+import { marginOutline } from "../state/margin";
 import { polarScale, radius } from "../state/polar";
 import type { MissionView } from "../state/view";
 import { formatDuration } from "../units/quantities";

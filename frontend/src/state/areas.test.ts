@@ -1,18 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { LonLat } from "../wire/beliefFrame";
-import {
-  areaM2,
-  areaOf,
-  closeRing,
-  cornerCount,
-  cornersFromText,
-  marginOutline,
-  polygonsOf,
-  type Rings,
-  ringsApart,
-  ringsTogether,
-} from "./areas";
-import { circle, destination, distanceM } from "./geometry";
+import { areaM2, areaOf, closeRing, cornerCount, cornersFromText, polygonsOf, type Rings, ringsApart, ringsTogether } from "./areas";
+import { circle, destination } from "./geometry";
 
 const square = (at: LonLat, side: number): LonLat[] => {
   const east = destination(at, 90, side);
@@ -33,38 +22,6 @@ it("a hole is not searched", () => {
   const outline = square([7, 50], 100);
   const hole = square(destination(destination([7, 50], 90, 20), 0, 20), 10);
   expect(areaM2(areaOf([[outline, hole]])!)).toBeCloseTo(9_900, -1);
-});
-
-describe("the margin around an area", () => {
-  const area = areaOf([[square([7, 50], 200)]])!;
-
-  it("keeps its distance everywhere", () => {
-    const corners = square([7, 50], 200);
-    for (const p of marginOutline(area, 60).flat()) {
-      expect(Math.min(...corners.map((c) => distanceM(c, p)))).toBeGreaterThan(59.9);
-    }
-  });
-
-  it("is as long as the outline and a circle together, for a convex area", () => {
-    const length = marginOutline(area, 60).reduce((sum, l) => sum + l.slice(1).reduce((s, p, i) => s + distanceM(l[i]!, p), 0), 0);
-    expect(length / (4 * 200 + 2 * Math.PI * 60)).toBeCloseTo(1, 1);
-  });
-
-  it("is nothing without a margin", () => {
-    expect(marginOutline(area, 0)).toEqual([]);
-  });
-
-  it("is worked out again only for another area or margin", () => {
-    const before = marginOutline(area, 60);
-    expect(marginOutline(area, 60)).toBe(before);
-    expect(marginOutline(area, 61)).not.toBe(before);
-    expect(marginOutline({ ...area }, 60)).not.toBe(before);
-  });
-
-  it("takes bounded steps along the edges of an area across 180 degrees", () => {
-    const across = closeRing([[179.99, -17] as LonLat, [-179.99, -17], [-179.99, -17.01], [179.99, -17.01]]);
-    expect(marginOutline(areaOf([[across]])!, 60).flat().length).toBeLessThan(4000);
-  });
 });
 
 describe("corners that were typed", () => {
