@@ -16,8 +16,7 @@ import websockets
 from backend.cli.demo_flight import DemoFailed, fly
 from backend.cli.demo_grade import sentences, summary
 from backend.cli.edge import print_json, remark, stop, words_of
-from backend.cli.running import running_server, stop_on_signals
-from backend.front import CannotServe
+from backend.cli.running import CannotServe, running_server, stop_on_signals
 from backend.settings import Settings, settings_of
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.spec import MOST_EMITTERS, EmitterSpec, MovementSpec

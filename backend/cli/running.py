@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import signal
-from collections.abc import AsyncGenerator, Callable, Sequence
-from contextlib import asynccontextmanager, nullcontext
+import socket
+from collections.abc import AsyncGenerator, Callable, Generator, Sequence
+from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass
 from types import FrameType
 
@@ -13,13 +14,16 @@ import uvicorn
 
 from backend.api.services import Services
 from backend.first_hold import FirstHold
-from backend.front import OpenedFront, opened_front
-from backend.main import create_app
+from backend.main import create_app, server_config
 from backend.mission.flights import LeftFlying
 from backend.settings import Settings
 from backend.simulation.emitters import SimulatedEmitter
 from backend.simulation.receiver import EmittersAroundHome
 from backend.wiring import open_simulation
+
+
+class CannotServe(RuntimeError):
+    """The server cannot start; the message says why and what to try."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,30 +41,62 @@ class RunningServer:
         self.server.should_exit = True
 
 
+WAITING_TO_ENTER = 2048
+"""Connections that the system keeps until they are let in: the event loop takes those of a crowd a few at a time."""
+
+
+class _Server(uvicorn.Server):
+    """Says when it answers. Leaves signals to `stop_on_signals`: uvicorn would raise them again once it has stopped,
+    and end the process before the vehicle and the journal are closed."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.ready = asyncio.Event()
+
+    @contextmanager
+    def capture_signals(self) -> Generator[None]:
+        yield
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        for bound in sockets or ():
+            bound.listen(WAITING_TO_ENTER)
+        self.ready.set()
+
+
 @asynccontextmanager
 async def running_server(
     settings: Settings,
     leave_flying: bool = False,
     emitters: Sequence[SimulatedEmitter] | None = None,
     first: FirstHold | None = None,
-    opened: OpenedFront | None = None,
 ) -> AsyncGenerator[RunningServer]:
     """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError.
 
     emitters: what transmits in the simulated world, None: what the settings name. first: the vehicle that was found in
-    flight and held already. opened: what answers already.
+    flight and held already.
     """
-    async with (
-        opened_front(settings) if opened is None else nullcontext(opened) as server,
-        open_simulation(settings, leave_flying, emitters, first) as (services, receiver),
-    ):
-        app = create_app(settings, lambda _: nullcontext(services))
-        async with app.router.lifespan_context(app):
-            server.front.lead_to(app)
+    bound = _bind(settings.host, settings.port)
+    try:
+        async with open_simulation(settings, leave_flying, emitters, first) as (services, receiver):
+            app = create_app(settings, lambda _: nullcontext(services))
+            server = _Server(server_config(settings, app))
+            gone = asyncio.create_task(server.serve(sockets=[bound]))
+            ready = asyncio.create_task(server.ready.wait())
+            await asyncio.wait({gone, ready}, return_when=asyncio.FIRST_COMPLETED)
+            ready.cancel()
+            if gone.done():
+                raise CannotServe("the server stopped while it started")
+            host = f"[{settings.host}]" if ":" in settings.host else settings.host
+            shown = "127.0.0.1" if host in ("0.0.0.0", "[::]") else host
+            running = RunningServer(f"http://{shown}:{bound.getsockname()[1]}", services, receiver, server, gone)
             try:
-                yield RunningServer(server.url, services, receiver, server.server, server.gone)
+                yield running
             finally:
-                await server.end()
+                running.stop()
+                await asyncio.gather(gone, return_exceptions=True)
+    finally:
+        bound.close()
 
 
 STOPPING = (signal.SIGINT, signal.SIGTERM)
@@ -119,3 +155,19 @@ def _left_words(left: LeftFlying) -> str:
             return "the pilot flies."
         case _:
             return f"left in {left.phase}."
+
+
+def _bind(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    bound = socket.socket(family, socket.SOCK_STREAM)
+    bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        bound.bind((host, port))
+    except OSError as error:
+        bound.close()
+        raise CannotServe(
+            f"cannot listen on {host} port {port}: {error.strerror}; choose another with "
+            f"{'--host' if isinstance(error, socket.gaierror) else '--port'}"
+        ) from error
+    bound.set_inheritable(False)
+    return bound

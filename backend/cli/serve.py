@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -97,18 +96,12 @@ def serve(
 
 async def _serve(settings: Settings, json_: bool) -> None:
     """What was left in flight is held before anything else is loaded, which takes seconds: a thread does that while
-    the link and the page are served."""
+    the link is served."""
     from backend.first_hold import hold_what_flies
 
     first = await hold_what_flies(settings)
-    from backend.front import opened_front
-
-    async with AsyncExitStack() as stack:
-        opened = await stack.enter_async_context(opened_front(settings))
-        server = await asyncio.to_thread(load, "backend.cli.running")
-        running = await stack.enter_async_context(
-            server.running_server(settings, leave_flying=True, first=first, opened=opened)
-        )
+    server = await asyncio.to_thread(load, "backend.cli.running")
+    async with server.running_server(settings, leave_flying=True, first=first) as running:
         server.stop_on_signals(running, remark)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
         access = running.services.access
@@ -138,7 +131,7 @@ def who_may_enter(mode: Mode, page: str, code: str | None) -> str:
 
 def _stop_because(error: ReasonedError | RuntimeError | ValueError) -> NoReturn:
     """Raises what nobody foresaw."""
-    from backend.front import CannotServe
+    from backend.cli.running import CannotServe
     from backend.ports import JournalUnavailable
     from backend.store.delivery import DatabaseAway
 

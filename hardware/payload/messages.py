@@ -21,7 +21,6 @@ from pydantic import (
     WrapValidator,
 )
 
-from hardware.payload.limits import MAXIMUM_MESSAGE_BYTES
 from hardware.readings import Channel, Pulses
 from hardware.reasons.payload import PayloadStateUnknown
 from hardware.reasons.payload_link import MessageNotUnderstood, PayloadLinkReason
@@ -31,6 +30,7 @@ from planner.reason import ReasonedError
 PROTOCOL = 4
 """3: several channels at once, and the receiver's state as a reason. 4: several tags at one frequency. Others are
 refused: update payload and server together."""
+MAXIMUM_MESSAGE_BYTES = 256 * 1024
 MAXIMUM_BATCH = 1000
 MAXIMUM_CHANNELS = 100
 MAXIMUM_RHYTHMS = 16

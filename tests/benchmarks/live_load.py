@@ -24,7 +24,7 @@ import time
 import urllib.request
 from collections import Counter
 from collections.abc import AsyncIterator, Sequence
-from contextlib import AsyncExitStack, asynccontextmanager, nullcontext
+from contextlib import asynccontextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -38,9 +38,8 @@ from backend.api.services import Services
 from backend.auth.access import Access
 from backend.auth.audit import AuditLog
 from backend.events import HoldOrdered, MissionDrafted, Recorded
-from backend.front import server_config
 from backend.live.hub import Hub
-from backend.main import create_app
+from backend.main import create_app, server_config
 from backend.ports import CraftStatus, Status
 from backend.settings import Settings
 from backend.spec import MissionSpec, Polygon
@@ -123,9 +122,7 @@ async def serve_fanout(port: int, folder: str, hertz: float) -> None:
             yield services
             publishing.cancel()
 
-    app = create_app(settings, opening)
-    async with app.router.lifespan_context(app):
-        await uvicorn.Server(server_config(settings, app)).serve()
+    await uvicorn.Server(server_config(settings, create_app(settings, opening))).serve()
 
 
 def percentile(values: Sequence[float], share: float) -> float:
@@ -240,11 +237,12 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
     delays_ms, answers_ms, phases = [], [], Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
         settings = Settings(port=port, data_dir=Path(folder), time_factor=16.0, live_ping_timeout_s=60.0)
-        async with open_services(settings) as services, AsyncExitStack() as stack:
+        async with open_services(settings) as services:
             app = create_app(settings, lambda _: nullcontext(services))
-            await stack.enter_async_context(app.router.lifespan_context(app))
             watch = Stopwatch(app)
-            server = uvicorn.Server(server_config(settings, watch))
+            config = server_config(settings, app)
+            config.app = watch
+            server = uvicorn.Server(config)
             serving = asyncio.create_task(server.serve())
             await until_answers(port)
             kept = json.loads((Path(folder) / "simulated_vehicle.json").read_text())

@@ -6,7 +6,6 @@ import json
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -78,24 +77,9 @@ class Server:
 
     def start_again(self) -> None:
         """On the same port, as after a power cut."""
-        self.begin_again()
-        self.until_started()
-
-    def begin_again(self) -> None:
-        """The same, without waiting for it."""
         port = self.url.rstrip("/").rsplit(":", 1)[1]
         self.process = started([*self.arguments, "--port", port])
-
-    def until_started(self) -> None:
         assert url_of(self.process) == self.url
-
-    def until_reached(self) -> None:
-        """Until somebody listens at its port, who may only have the page yet."""
-        name, port = self.url.rstrip("/").rsplit("/", 1)[1].split(":")
-        while True:
-            with suppress(OSError), socket.create_connection((name, int(port))):
-                return
-            time.sleep(0.01)
 
 
 def started(arguments: list[str]) -> subprocess.Popen[str]:
