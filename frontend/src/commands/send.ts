@@ -1,5 +1,5 @@
 // Sending a command and telling what became of it, at the place where it was given.
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { RequestFailed, refusal, unreachable } from "../sources/problem";
 import type { Source } from "../sources/source";
 import { source } from "../state/connection";
@@ -10,6 +10,13 @@ import type { Command, CommandReply, Problem } from "../wire";
 export type Desk = "bar" | "control" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area" | "truth" | "order";
 
 export const problems = signal<Partial<Record<Desk, Problem>>>({});
+
+/** What was refused in one mission says nothing of another, but the bar speaks of what flies. */
+effect(() => {
+  void source.value;
+  const { bar } = problems.peek();
+  problems.value = bar ? { bar } : {};
+});
 
 export function report(desk: Desk, problem: Problem | null): void {
   const { [desk]: _old, ...others } = problems.value;
@@ -43,13 +50,16 @@ async function fenceComes(missionId: string): Promise<number | null> {
 export async function send(desk: Desk, missionId: string, command: Command): Promise<boolean> {
   const from = source.peek();
   if (!from) return false;
+  const tell = (problem: Problem) => {
+    if (desk === "bar" || source.peek() === from) report(desk, problem);
+  };
   report(desk, null);
   try {
     const reply = await steered(from, missionId, command);
     if (reply.accepted) return true;
-    report(desk, refusal(reply.reason));
+    tell(refusal(reply.reason));
   } catch (error) {
-    report(desk, asProblem(error));
+    tell(asProblem(error));
   }
   return false;
 }

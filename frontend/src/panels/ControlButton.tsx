@@ -86,6 +86,7 @@ export function ControlAsked() {
       <span>{t("steer.asksYou", { name: view.control.asked.name, seconds: secondsToWait(view) })}</span>
       <Order missionId={view.missionId} kind="give_control" main />
       <Order missionId={view.missionId} kind="keep_control" />
+      <ProblemNote desk="control" />
     </div>
   );
 }

@@ -21,6 +21,8 @@ const budget = signal("");
 const ESTIMATORS = ["map", "expected_value", "geometric_median"] as const satisfies Estimator[];
 const ERRORS = ["independent", "joint"] as const satisfies Errors[];
 
+export const isBudgetUnread = (): boolean => !/^\s*\d*\s*$/.test(budget.value);
+
 /** The fields below, in the words of the question; a bearing of another moment or mission is not named. */
 export function furtherWishes(): Pick<Supposition, "without" | "estimator" | "bearing_errors" | "budget"> {
   const known = new Set(flownBearings.value.map((b) => b.bearing_id));
@@ -88,6 +90,7 @@ export function FurtherWishes() {
           inputMode="numeric"
           placeholder={String(mission.value.spec?.planner.budget ?? "")}
           value={budget.value}
+          aria-invalid={isBudgetUnread()}
           onInput={(e) => (budget.value = e.currentTarget.value)}
         />
       </label>
@@ -127,7 +130,7 @@ export function KeepVariant({ missionId, asked }: { missionId: string; asked: ()
         value={name}
         onInput={(e) => setName(e.currentTarget.value.replaceAll("/", "-"))} // its address has the name in it
       />
-      <button type="submit" data-testid="keep-variant" disabled={/^\s*\.*\s*$/.test(name)}>
+      <button type="submit" data-testid="keep-variant" disabled={isBudgetUnread() || /^\s*\.*\s*$/.test(name)}>
         {t("whatIf.keep")}
       </button>
       <a class="button" href={`#/compare/${encodeURIComponent(missionId)}`} data-testid="open-compare">

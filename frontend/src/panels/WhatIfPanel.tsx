@@ -13,7 +13,7 @@ import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
 import { ProblemBox } from "./ProblemNote";
-import { FurtherWishes, furtherWishes, KeepVariant } from "./WhatIfMore";
+import { FurtherWishes, furtherWishes, isBudgetUnread, KeepVariant } from "./WhatIfMore";
 
 const PLANNERS = {
   flown: {},
@@ -191,7 +191,7 @@ export function WhatIfPanel() {
       setAsking(false);
     }
   };
-  const unreadable = [sigma, outliers, mounting].some((field) => Number.isNaN(typed(field.value)));
+  const unreadable = isBudgetUnread() || [sigma, outliers, mounting].some((field) => Number.isNaN(typed(field.value)));
   return (
     <details class="more what-if" data-testid="what-if" open={shown !== null}>
       <summary>{t("whatIf.title")}</summary>
