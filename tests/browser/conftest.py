@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -127,3 +127,12 @@ def open_screen(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Op
 @pytest.fixture
 def screen(server: Server, open_screen: OpenScreen) -> Screen:
     return open_screen(server)
+
+
+@pytest.fixture
+def editor(screen: Screen) -> Screen:
+    """A new mission, with the area that is suggested."""
+    screen.go("#/new")
+    screen.map_ready("edit-map")
+    expect(screen.part("area-size")).to_have_attribute("data-suggested", "true")
+    return screen

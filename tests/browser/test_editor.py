@@ -17,14 +17,6 @@ IN_SECONDS = "50°37′31.1″ N 7°12′13.1″ E\n50°37′31.1″ N 7°12′1
 ALTITUDE = "field-flight-altitude_relative_m"
 
 
-@pytest.fixture
-def editor(screen: Screen) -> Screen:
-    screen.go("#/new")
-    screen.map_ready("edit-map")
-    expect(screen.part("area-size")).to_have_attribute("data-suggested", "true")
-    return screen
-
-
 def paste(editor: Screen, corners: str) -> None:
     if not editor.part("paste-area").is_visible():
         editor.page.get_by_text("Paste GeoJSON or corner").click()

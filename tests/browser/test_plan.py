@@ -20,14 +20,6 @@ KML = """<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Place
 <LinearRing><coordinates>{}</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>"""
 
 
-@pytest.fixture
-def editor(screen: Screen) -> Screen:
-    screen.go("#/new")
-    screen.map_ready("edit-map")
-    expect(screen.part("area-size")).to_have_attribute("data-suggested", "true")
-    return screen
-
-
 def write(tmp_path: Path, name: str, text: str) -> Path:
     path = tmp_path / name
     path.write_text(text)

@@ -31,7 +31,7 @@ function show(kind: Urgent, state: UrgentState | null): void {
   urgent.value = state ? { ...others, [kind]: state } : others;
 }
 
-/** The order that counts of those to each mission, or craft that flies for none: gives it anew. */
+/** Gives the last order once more, by the mission that it went to, or by the craft that flies for none. */
 const newest = new Map<string, () => void>();
 
 /** The trying of an older one ends, else it would be carried out after this. Nothing ends an abort. */

@@ -22,6 +22,7 @@ import { drawnWays } from "../state/ways";
 import { formatBearing } from "../units/quantities";
 import type { Problem } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
+import { useGps } from "./useGps";
 import "../style/report.css";
 
 /** Standard deviations of what a hand antenna tells, its compass included. */
@@ -66,32 +67,8 @@ const stageWords = (stage: Stage, problem: string | null, silent: boolean): stri
       ? t("report.stage.refused", { problem: problem ?? "" })
       : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
 
-function useGps(onPlace: (at: LonLat) => void) {
-  // silent: it does not know just now, and is still asked
-  const [state, setState] = useState<"off" | "asking" | "on" | "silent" | "denied">("off");
-  const [accuracy, setAccuracy] = useState<number | null>(null);
-  const asked = state !== "off" && state !== "denied";
-  useEffect(() => {
-    if (!asked) return;
-    const watch = navigator.geolocation?.watchPosition(
-      ({ coords }) => {
-        setState("on");
-        setAccuracy(coords.accuracy);
-        onPlace([coords.longitude, coords.latitude]);
-      },
-      ({ code, PERMISSION_DENIED }) => setState(code === PERMISSION_DENIED ? "denied" : "silent"),
-      { enableHighAccuracy: true, maximumAge: 2000 },
-    );
-    if (watch === undefined) setState("denied");
-    return () => {
-      if (watch !== undefined) navigator.geolocation.clearWatch(watch);
-    };
-  }, [asked]);
-  return { state, accuracy, start: () => setState("asking"), stop: () => setState("off") };
-}
-
 /** Of a field: what is typed stands, whatever is drawn meanwhile, until the field is left or its value comes from elsewhere. */
-function useTyped<T>(value: T, words: string, read: (text: string) => T, onRead: (value: T) => void) {
+function useFieldText<T>(value: T, words: string, read: (text: string) => T, onRead: (value: T) => void) {
   const [typed, setTyped] = useState<{ text: string; value: T } | null>(null);
   return {
     value: typed?.value === value ? typed.text : words,
@@ -210,7 +187,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
     setReporter(next);
     keepReporter(next);
   };
-  const typedDirection = useTyped(
+  const typedDirection = useFieldText(
     direction,
     direction === null ? "" : String(Math.round(direction) % 360).padStart(3, "0"),
     bearingIn,
@@ -219,7 +196,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
       setBearing(degrees);
     },
   );
-  const typedDeclination = useTyped(
+  const typedDeclination = useFieldText(
     reporter.declination,
     String(reporter.declination),
     (text) => Number(text.replace(",", ".")) || 0,
