@@ -6,7 +6,7 @@ import type { Flown } from "../state/flying";
 import { open } from "../state/open";
 import type { Reason } from "../wire";
 import { problems } from "./send";
-import { sendUrgent, urgent } from "./urgent";
+import { countermand, sendUrgent, urgent } from "./urgent";
 
 const M: Flown = { id: "m", craftId: "c", phase: "flying" };
 
@@ -69,8 +69,9 @@ it("is under way once: a second press waits for the first, another command does 
 });
 
 it("reaches a craft that flies for no mission, which has none to abort", async () => {
+  void vi.advanceTimersByTimeAsync(20_000);
   const loose: Flown = { id: null, craftId: "c", phase: "hold" };
-  for (const kind of ["hold", "return", "land", "abort"] as const) void sendUrgent(loose, kind);
+  for (const kind of ["abort", "hold", "return", "land"] as const) await sendUrgent(loose, kind);
   expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["craft c hold", "craft c return", "craft c land"]);
 });
 
@@ -126,4 +127,48 @@ it("of one craft is not ended, nor kept back, by one of another", async () => {
   source.answer = () => Promise.resolve(accepted);
   await vi.advanceTimersByTimeAsync(800);
   expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["m return", "n return", "n hold", "m return", "n hold"]);
+});
+
+it("goes on when a newer one is refused", async () => {
+  source.answer = () => Promise.reject(unreachable("no link"));
+  void sendUrgent(M, "hold");
+  await vi.advanceTimersByTimeAsync(100);
+  source.answer = () => Promise.resolve({ ...accepted, accepted: kinds().at(-1) === "hold", reason: { code: "pilot_controls" } });
+  void sendUrgent(M, "return");
+  await vi.advanceTimersByTimeAsync(1_000);
+  expect(kinds()).toEqual(["hold", "return", "hold"]);
+  expect(urgent.value).toEqual({ hold: { stage: "accepted", count: 1 } });
+});
+
+it("goes out once more when an older one was answered first, which may have been carried out after it", async () => {
+  source.answer = slowly;
+  void sendUrgent(M, "hold");
+  await vi.advanceTimersByTimeAsync(100);
+  void sendUrgent(M, "return");
+  await vi.advanceTimersByTimeAsync(2_000);
+  expect(kinds()).toEqual(["hold", "return", "return"]);
+});
+
+it("stays behind once the search was resumed, however late an answer comes", async () => {
+  source.answer = slowly;
+  void sendUrgent(M, "return");
+  source.answer = () => Promise.resolve(accepted);
+  void sendUrgent(M, "hold");
+  await vi.advanceTimersByTimeAsync(100);
+  countermand("m");
+  await vi.advanceTimersByTimeAsync(2_000);
+  expect(kinds()).toEqual(["return", "hold"]);
+});
+
+it("does not bring an older one back before a newer one that is still on its way", async () => {
+  source.answer = slowly;
+  void sendUrgent(M, "return");
+  source.answer = () => Promise.resolve(accepted);
+  void sendUrgent(M, "hold");
+  source.answer = () => Promise.reject(unreachable("no link"));
+  void sendUrgent(M, "land");
+  await vi.advanceTimersByTimeAsync(600);
+  source.answer = () => Promise.resolve(accepted);
+  await vi.advanceTimersByTimeAsync(2_000);
+  expect(kinds()).toEqual(["return", "hold", "land", "land", "land"]);
 });

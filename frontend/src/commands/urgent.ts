@@ -14,7 +14,6 @@ type InNoMission = Exclude<Urgent, "abort">;
 export interface UrgentState {
   stage: "sending" | "retrying" | "accepted";
   count: number;
-  to: string;
 }
 
 /** One entry a kind: a hold never takes the place of an abort that is still on its way. */
@@ -24,61 +23,110 @@ const RETRY_MS = 700;
 const GIVE_UP_AFTER = 60;
 const SHOWN_MS = 4000;
 
+interface Order {
+  flown: Flown;
+  kind: Urgent;
+  /** The mission that it goes to, or the craft that flies for none. */
+  to: string;
+  shown: UrgentState | null;
+  /** It is tried no more: the newer one that was accepted instead, null when it does not matter which. */
+  endedBy?: Order | null;
+  /** An older one was accepted while this was on its way, and may have been carried out after it. */
+  isCrossed?: boolean;
+  isRepeat?: boolean;
+}
+
+/** The first given first. An abort waits for nothing, and nothing ends it. */
+const underWay = new Set<Order>();
+
+const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to);
+
+const newerThan = (own: Order): Order[] => {
+  const all = ordersTo(own.to);
+  return all.slice(all.indexOf(own) + 1);
+};
+
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-function show(kind: Urgent, state: UrgentState | null): void {
-  const { [kind]: _old, ...others } = urgent.value;
-  urgent.value = state ? { ...others, [kind]: state } : others;
+const isShown = (order: Order): boolean => order.shown !== null && urgent.peek()[order.kind] === order.shown;
+
+function show(own: Order, state: UrgentState | null): void {
+  if (!state && !isShown(own)) return;
+  const { [own.kind]: _old, ...others } = urgent.value;
+  urgent.value = state ? { ...others, [own.kind]: state } : others;
+  own.shown = state;
 }
 
-/** Gives the last order once more, by the mission that it went to, or by the craft that flies for none. */
-const newest = new Map<string, () => void>();
-
-/** The trying of an older one ends, else it would be carried out after this. Nothing ends an abort. */
-function count(to: string, again: () => void): void {
-  newest.set(to, again);
-  const { abort } = urgent.peek();
-  urgent.value = abort ? { abort } : {};
+function end(order: Order, by: Order | null): void {
+  if (order.kind === "abort") return;
+  order.endedBy = by;
+  show(order, null);
 }
+
+/** Somebody has ordered something else since: what is still on its way is not tried again. */
+export function countermand(to: string): void {
+  for (const order of ordersTo(to)) end(order, null);
+}
+
+const repeat = ({ flown, kind, to }: Order): void => void give({ flown, kind, to, shown: null, isRepeat: true });
 
 /** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
 export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
-  const { id, craftId } = flown;
-  const to = id ?? craftId;
-  const underWay = urgent.peek()[kind];
-  if ((underWay?.to === to && underWay.stage !== "accepted") || (id === null && kind === "abort")) return;
-  const commandId = newCommandId();
-  const before = newest.get(to);
-  const again = () => void sendUrgent(flown, kind);
-  const counts = () => kind === "abort" || newest.get(to) === again;
-  if (kind !== "abort") count(to, again);
+  const to = flown.id ?? flown.craftId;
+  const before = ordersTo(to);
+  const alike = before.filter((order) => order.kind === kind && order.endedBy === undefined);
+  const isPressed = alike.some((order) => isShown(order) && (kind === "abort" || order === before.at(-1)));
+  if (isPressed || (flown.id === null && kind === "abort")) return;
+  for (const order of alike) end(order, null);
+  for (const order of before) if (kind !== "abort" && order.kind !== "abort") show(order, null);
   report("bar", null);
-  for (let tries = 0; tries < GIVE_UP_AFTER && counts(); tries++) {
-    show(kind, { stage: tries === 0 ? "sending" : "retrying", count: tries, to });
+  await give({ flown, kind, to, shown: null });
+}
+
+async function give(own: Order): Promise<void> {
+  const { id, craftId } = own.flown;
+  const { kind } = own;
+  const commandId = newCommandId();
+  underWay.add(own);
+  for (let tries = 0; tries < GIVE_UP_AFTER && own.endedBy === undefined; ) {
+    // an abort may be refused where a hold is not: only another kind is waited for
+    if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort")) {
+      show(own, null);
+      await pause(RETRY_MS);
+      continue;
+    }
+    show(own, { stage: tries === 0 ? "sending" : "retrying", count: tries });
+    tries += 1;
     try {
       const from = source.peek()!;
       const reply = await (id !== null
         ? from.send(id, { kind }, commandId)
         : from.order(craftId, { kind: kind as InNoMission }, commandId));
-      if (!counts()) {
-        // it arrived all the same, perhaps after the one that counts
-        if (reply.accepted) newest.get(to)!();
-        return;
+      const newer = newerThan(own);
+      if (reply.accepted) for (const order of newer) order.isCrossed = true;
+      if (own.endedBy !== undefined) {
+        if (reply.accepted && own.endedBy && newer.length === 0) repeat(own.endedBy);
+        break;
       }
-      report("bar", reply.accepted ? null : refusal(reply.reason));
+      if (!own.isRepeat) report("bar", reply.accepted ? null : refusal(reply.reason));
       if (!reply.accepted) break;
-      // an abort only now: it may be refused where a hold is not
-      if (newest.get(to) === before) count(to, again);
-      show(kind, { stage: "accepted", count: tries, to });
+      for (const order of ordersTo(own.to)) {
+        if (order === own) break;
+        end(order, own);
+      }
+      underWay.delete(own);
+      if (own.isCrossed && newer.length === 0) repeat(own);
+      show(own, { stage: "accepted", count: tries - 1 });
       await pause(SHOWN_MS);
       break;
     } catch (error) {
-      if (!counts()) return;
+      if (own.endedBy !== undefined) break;
       report("bar", asProblem(error));
       const refused = error instanceof RequestFailed && error.problem.status >= 400 && error.problem.status < 500;
       if (refused) break;
       await pause(RETRY_MS);
     }
   }
-  if (counts()) show(kind, null);
+  underWay.delete(own);
+  show(own, null);
 }

@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { landingArmed } from "../commands/landing";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, report, send } from "../commands/send";
-import { sendUrgent, type Urgent, urgent } from "../commands/urgent";
+import { countermand, sendUrgent, type Urgent, urgent } from "../commands/urgent";
 import { type MessageKey, reasonText, t } from "../i18n";
 import { refusal } from "../sources/problem";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
@@ -75,11 +75,15 @@ function Landing() {
 }
 
 async function resume({ id, craftId }: Flown): Promise<void> {
-  if (id !== null) return void (await send("bar", id, { kind: "resume", craft_id: craftId }));
+  if (id !== null) {
+    if (await send("bar", id, { kind: "resume", craft_id: craftId })) countermand(id);
+    return;
+  }
   report("bar", null);
   try {
     const reply = await source.peek()!.order(craftId, { kind: "resume" });
-    if (!reply.accepted) report("bar", refusal(reply.reason));
+    if (reply.accepted) countermand(craftId);
+    else report("bar", refusal(reply.reason));
   } catch (error) {
     report("bar", asProblem(error));
   }
