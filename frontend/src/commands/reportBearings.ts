@@ -102,8 +102,9 @@ export async function sendWaiting(): Promise<void> {
 
 /** A thumb's second tap, while compass and place may have moved a little. */
 function isTwice({ report: { taken_at_utc, ...last } }: Queued, bearing: Told): boolean {
-  const alike =
-    last.by === bearing.by && last.emitter_id === bearing.emitter_id && Math.abs(last.bearing_deg - bearing.bearing_deg) < TWICE_DEG;
+  const off = Math.abs(last.bearing_deg - bearing.bearing_deg);
+  const isSame = (["by", "emitter_id", "sigma_deg", "snr_db"] as const).every((name) => last[name] === bearing[name]);
+  const alike = isSame && Math.min(off, 360 - off) < TWICE_DEG;
   return alike && Math.abs(Date.now() - Date.parse(taken_at_utc ?? "")) < TWICE_MS;
 }
 

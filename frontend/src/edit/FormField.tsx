@@ -39,8 +39,11 @@ function NumberInput({ field, failed }: Properties<NumberField>) {
   const stored = get(now.spec, field.path);
   const id = idOf(field.path);
   const shown = typeof stored === "number" ? shownValue(stored, scale) : "";
-  const { input, isWrong } = useTyped(field.path, shown, typedNumber, (value) =>
-    change(field.path, Number((value * scale).toPrecision(12))),
+  const { input, isWrong } = useTyped(
+    field.path,
+    shown,
+    (words) => typedNumber(words, field.scale),
+    (value) => change(field.path, Number((value * scale).toPrecision(12))),
   );
   const message = isWrong ? t("edit.notNumber") : wrong(field.path, failed);
   return (

@@ -29,22 +29,26 @@ async function unite(): Promise<boolean> {
   return true;
 }
 
-/** Until files have been read and parts have become one. false: a file could not be read. */
-let settling: Promise<boolean> = Promise.resolve(true);
+/** Files that are being read and parts that become one. false: a file could not be read. */
+const settling = new Set<Promise<boolean>>();
+
+function settle(work: Promise<boolean>): void {
+  settling.add(work);
+  void work.finally(() => settling.delete(work));
+}
 
 /** Puts what is being read into the draft that is there now, unless another one is there by then. Fails as the reading. */
 export function addRead<T>(reading: Promise<T>, put: (found: T) => void): Promise<T> {
   const key = draft.peek()?.key;
   const added = reading.then((found) => {
-    if (draft.peek()?.key === key) put(found);
+    if (key === undefined || draft.peek()?.key === key) put(found);
     return found;
   });
-  settling = added.then(
-    () => true,
-    () => {
-      settling = Promise.resolve(true);
-      return false;
-    },
+  settle(
+    added.then(
+      () => true,
+      () => false,
+    ),
   );
   return added;
 }
@@ -58,11 +62,7 @@ function endMoving(): void {
  * not be read, or the page was left. */
 export async function settledDraft(): Promise<Draft | null> {
   endMoving();
-  let waited: typeof settling;
-  do {
-    waited = settling;
-    if (!(await waited)) return null;
-  } while (waited !== settling);
+  while (settling.size > 0) if ((await Promise.all(settling)).includes(false)) return null;
   return draft.peek();
 }
 
@@ -75,7 +75,7 @@ export function add(kind: What, polygons: readonly Rings[]): void {
   if (kind === "area") {
     const joined = areaOf(now.hasArea && !now.suggested && !replaces.peek() ? [...polygonsOf(area), ...polygons] : polygons)!;
     update({ ...now, hasArea: true, suggested: false, spec: { ...now.spec, area: joined } });
-    settling = unite();
+    settle(unite());
   } else if (kind === "fence") {
     update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
   } else {
@@ -99,7 +99,7 @@ export function replace(kind: What, polygons: readonly Rings[]): void {
   if (!now || !joined) return;
   if (kind === "area") {
     update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
-    settling = unite();
+    settle(unite());
   } else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
   else keepOff(now, polygons.map(zone));
 }

@@ -230,10 +230,11 @@ export function shownValue(stored: number, scale: number): string {
   return locale.value === "de" ? text.replace(".", ",") : text;
 }
 
-/** Number from what was typed (a decimal comma is fine); null when it is none, or may have a mark between thousands. */
-export function typedNumber(text: string): number | null {
+/** Number from what was typed (a decimal comma is fine); null when it is none, or may have a mark between thousands, which
+ * nobody writes into MHz. */
+export function typedNumber(text: string, scale = 1): number | null {
   const plain = text.trim().replace(",", ".");
   const mayBeThousands = /^[+-]?[1-9]\d{0,2}\.\d{3}$/.test(plain) && text.includes(locale.value === "de" ? "." : ",");
-  if (mayBeThousands || !/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(plain)) return null;
+  if ((mayBeThousands && scale !== 1e6) || !/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(plain)) return null;
   return Number(plain);
 }

@@ -24,6 +24,7 @@ export function useTyped<T>(path: string, shown: string, parse: (words: string) 
         if (value !== null) take(value);
       },
       onBlur: () => setWords(null),
+      onKeyDown: ({ key }: { key: string }) => key === "Enter" && setWords(null),
     },
   };
 }

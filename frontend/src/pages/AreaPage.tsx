@@ -4,7 +4,7 @@ import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
-import { draft, forget, storedDraft, update } from "../edit/draft";
+import { draft, forget, isUnread, storedDraft, update } from "../edit/draft";
 import { replaces, settledDraft, tool } from "../edit/drawing";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
@@ -54,7 +54,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
   };
   const judged = outlook.value;
   const isAsking = judged !== null && !judged.found && !judged.problem;
-  const isReadable = draft.value?.hasArea && Object.keys(draft.value.text).length === 0;
+  const isReadable = draft.value?.hasArea && !isUnread(draft.value);
   const held = mission.value.phase === "hold" && mission.value.ended === null;
   return (
     <div class="edit" data-testid="area-page">
@@ -97,7 +97,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
                   class="primary"
                   data-testid="outlook-ask"
                   disabled={isAsking || !isReadable}
-                  onClick={() => void settledDraft().then((settled) => settled && askOutlook(id, settled.spec))}
+                  onClick={() => void settledDraft().then((settled) => (settled?.key === key ? askOutlook(id, settled.spec) : undefined))}
                 >
                   {t(isAsking ? "area.asking" : "area.ask")}
                 </button>

@@ -1,4 +1,5 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
+import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { asFailure } from "../commands/send";
 import { suggestedSpec } from "../commands/suggested";
@@ -139,13 +140,27 @@ function Motion({ failed }: { failed: RequestFailed | null }) {
   );
 }
 
+/** Opens where something is wrong, and stays as it is when that has been mended. */
+function More({ isOpen, children }: { isOpen: boolean; children: ComponentChildren }) {
+  const box = useRef<HTMLDetailsElement>(null);
+  useEffect(() => {
+    if (isOpen && box.current) box.current.open = true;
+  }, [isOpen]);
+  return (
+    <details class="more" ref={box}>
+      <summary>{t("edit.more")}</summary>
+      {children}
+    </details>
+  );
+}
+
 function Sections({ failed }: { failed: RequestFailed | null }) {
   return (
     <>
       {sections.map((section) => {
         const asked = section.fields.filter(({ when }) => when?.(draft.value!.spec) ?? true);
         const more = asked.filter((f) => f.more);
-        const isOpen = more.some((f) => draft.value!.text[f.path] !== undefined || failed?.fieldMessage(f.path));
+        const isOpen = more.some((f) => draft.value!.text[f.path] !== undefined || failed?.fieldMessage(f.path) != null);
         return (
           <fieldset class="panel" key={section.title}>
             <legend>{t(section.title)}</legend>
@@ -155,13 +170,12 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
                 <FormField field={field} failed={failed} key={field.path} />
               ))}
             {more.length > 0 && (
-              <details class="more" open={isOpen}>
-                <summary>{t("edit.more")}</summary>
+              <More isOpen={isOpen}>
                 {more.map((field) => (
                   <FormField field={field} failed={failed} key={field.path} />
                 ))}
                 {section.title === "edit.section.planner" && <Motion failed={failed} />}
-              </details>
+              </More>
             )}
           </fieldset>
         );

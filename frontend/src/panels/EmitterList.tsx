@@ -45,7 +45,7 @@ export function EmitterList() {
   const isTold = JSON.stringify(groupsOf(emitters)) === JSON.stringify(groupsOf(told));
   useEffect(() => {
     if (isTold || !ordering.value) setSent(null);
-  }, [isTold, ordering.value]);
+  }, [isTold, ordering.value, sent]);
   const order = async (id: string, priorities: Priorities) => {
     setSent(priorities);
     const accepted = await send("order", id, { kind: "set_priorities", priorities });

@@ -7,14 +7,14 @@ import type { MissionSummary, Problem } from "../wire";
 import { ProblemBox } from "./ProblemNote";
 
 /** What was typed and is not saved yet, by mission: the form closes when another row's is opened. */
-const unsaved = new Map<string, { name: string; tags: string; notes: string }>();
+const unsaved = new Map<string, { name?: string; tags?: string; notes?: string }>();
 
 export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone: () => void }) {
   const { mission_id: id, deleted_at_utc: deleted } = mission;
-  const [typed, setTyped] = useState(unsaved.get(id) ?? { name: mission.name, tags: mission.tags.join(", "), notes: mission.notes });
+  const [typed, setTyped] = useState(unsaved.get(id) ?? {});
   const [problem, setProblem] = useState<Problem | null>(null);
   const [sending, setSending] = useState(false);
-  const { name, tags, notes } = typed;
+  const { name, tags, notes } = { name: mission.name, tags: mission.tags.join(", "), notes: mission.notes, ...typed };
   const type = (changes: Partial<typeof typed>) => {
     const next = { ...typed, ...changes };
     unsaved.set(id, next);

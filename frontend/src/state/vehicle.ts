@@ -11,9 +11,12 @@ import { unseen, type VehicleView, withoutTremble } from "./vehicleView";
 /** The stored path: what was flown before this page was opened. */
 export const track = signal<readonly TrackFact[]>([]);
 
+let loads = 0;
+
 async function loadTrack(from: Source, missionId: string, craftId: string): Promise<void> {
+  const mine = ++loads;
   const loaded = await from.track(missionId, craftId).catch(() => null);
-  if (!loaded || source.peek() !== from || craftFlown.peek() !== craftId) return;
+  if (!loaded || mine !== loads || source.peek() !== from || craftFlown.peek() !== craftId) return;
   const paths = new Map(live.peek().paths);
   paths.delete(craftId);
   batch(() => {
