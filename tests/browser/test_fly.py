@@ -6,7 +6,7 @@ import re
 
 import httpx
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 from screen import OpenScreen, Screen
 from served import QUICK, Server
 
@@ -160,3 +160,25 @@ def test_the_server_is_killed_in_flight_and_comes_back_in_hold(
     assert server.get(f"/api/missions/{made}")["phase"] == "hold"
     screen.part("abort").click()
     screen.expect_phase("aborted", "returning")
+
+
+def test_the_last_order_counts_when_the_link_comes_back(server: Server, screen: Screen) -> None:
+    made = server.draft(expected_rmse_m=0.1, maximum_bearings=200)
+    screen.fly(made)
+    lost = list[Route]()
+
+    def lose(route: Route) -> None:
+        lost.append(route)
+        route.abort()
+
+    screen.page.route("**/commands", lose)
+    screen.part("return").click()
+    screen.part("hold").click()
+    screen.page.wait_for_timeout(1500)
+    assert len(lost) > 2
+    screen.page.unroute("**/commands", lose)
+    screen.expect_phase("hold")
+    screen.page.wait_for_timeout(2000)
+    ordered = [e["reason"].get("order") for e in server.events(made) if e["kind"] == "phase_changed"]
+    assert ordered[-1] == "hold"
+    assert "return" not in ordered

@@ -90,7 +90,7 @@ async function give(own: Order): Promise<void> {
   underWay.add(own);
   for (let tries = 0; tries < GIVE_UP_AFTER && own.endedBy === undefined; ) {
     // an abort may be refused where a hold is not: only another kind is waited for
-    if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort")) {
+    if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort" && order.endedBy === undefined)) {
       show(own, null);
       await pause(RETRY_MS);
       continue;
