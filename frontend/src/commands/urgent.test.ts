@@ -86,7 +86,7 @@ it("is not tried again after a newer one, which counts instead", async () => {
   expect(kinds()).toEqual(["return", "hold", "hold"]);
 });
 
-it("can be given anew after another that replaced it", async () => {
+it("can be given a second time after another kind of order", async () => {
   source.answer = () => Promise.reject(unreachable("no link"));
   for (const kind of ["return", "hold", "return"] as const) void sendUrgent(M, kind);
   await vi.advanceTimersByTimeAsync(800);
