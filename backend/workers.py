@@ -28,7 +28,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 TIME_S = 20.0
-MEMORY_BYTES = 2**30
+MEMORY_BYTES = 180 * 2**20
 MOST_WAITING = 8
 NICER_BY = 10
 """The flight's own process goes first on a busy machine."""
@@ -51,7 +51,7 @@ class WorkersBusy(ReasonedError):
 @dataclass(slots=True)
 class Workers:
     """One process, started with the first file. time_s, memory_bytes: what one file may take, the latter on top of what
-    the process needs by itself. Closed with the server."""
+    the process holds when it begins with it. Closed with the server."""
 
     time_s: float = TIME_S
     memory_bytes: int = MEMORY_BYTES
@@ -68,7 +68,8 @@ class Workers:
         pool = self._opened()
         self._waiting += 1
         try:
-            return await asyncio.wrap_future(pool.schedule(_tidied, (work, *args), kwargs, timeout=self.time_s))
+            bounded = (self.memory_bytes, work, *args)
+            return await asyncio.wrap_future(pool.schedule(_bounded, bounded, kwargs, timeout=self.time_s))
         except TimeoutError as error:
             raise WorkStopped(FileTooHeavy("time", self.time_s, self.memory_bytes)) from error
         except MemoryError as error:
@@ -92,30 +93,38 @@ class Workers:
         if self._pool is None:
             # spawned, not forked: the server has threads, and its memory is not the file's to look at
             self._pool = ProcessPool(
-                max_workers=1,
-                initializer=_confine,
-                initargs=(self.memory_bytes,),
-                context=multiprocessing.get_context("spawn"),
+                max_workers=1, initializer=os.nice, initargs=(NICER_BY,), context=multiprocessing.get_context("spawn")
             )
         return self._pool
 
 
-def _tidied(work: Callable[..., T], *args: Any, **kwargs: Any) -> T:
-    """The result of `work`; what the allocator keeps of its memory is given back to the system."""
+def _bounded(memory_bytes: int, work: Callable[..., T], *args: Any, **kwargs: Any) -> T:
+    """The result of `work`, which may take so much memory more than this process holds."""
+    _allow(memory_bytes)
     try:
         return work(*args, **kwargs)
+    except MemoryError:
+        pass  # with it go the frames that hold what was read
     finally:
-        gc.collect()
-        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc's
-        if trim is not None:
-            trim(0)
+        _give_back()
+        _allow(None)  # the answer is yet to be packed
+    raise MemoryError
 
 
-def _confine(memory_bytes: int) -> None:
-    """In the new process, before its first work."""
-    os.nice(NICER_BY)
+def _allow(memory_bytes: int | None) -> None:
+    """None: as much as the system gives."""
     statm = Path("/proc/self/statm")
-    if statm.exists():  # elsewhere the limit of time alone must do
-        now_bytes = int(statm.read_text().split()[0]) * resource.getpagesize()
-        most = now_bytes + memory_bytes
-        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+    if not statm.exists():  # elsewhere the limit of time alone must do
+        return
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    held_bytes = int(statm.read_text().split()[5]) * resource.getpagesize()
+    most = hard if memory_bytes is None else held_bytes + memory_bytes
+    resource.setrlimit(resource.RLIMIT_DATA, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+
+
+def _give_back() -> None:
+    """What the allocator keeps of freed memory goes back to the system."""
+    gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc's
+    if trim is not None:
+        trim(0)

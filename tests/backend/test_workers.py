@@ -28,6 +28,13 @@ def _fill(size: int) -> int:
     return len(bytearray(size))
 
 
+def _keep(count: int) -> int:
+    kept = [""]
+    while len(kept) < count:
+        kept.append(str(len(kept)))
+    return len(kept)
+
+
 def _nest(depth: int) -> int:
     return 1 if depth == 0 else 1 + _nest(depth - 1)
 
@@ -65,6 +72,13 @@ async def test_a_file_that_takes_too_much_is_stopped_and_the_next_is_read(
         await strict.run(work, *([] if argument is None else [argument]))
     assert stopped.value.reason == FileTooHeavy(limit, strict.time_s, 200 * 2**20)
     assert await strict.run(_fill, 1000) == 1000
+
+
+async def test_a_file_that_takes_too_much_leaves_the_next_its_memory(strict: Workers) -> None:
+    strict.time_s = 60.0
+    with pytest.raises(WorkStopped):
+        await strict.run(_keep, 6_000_000)
+    assert await strict.run(_keep, 2_000_000) == 2_000_000
 
 
 async def test_the_event_loop_goes_on_meanwhile(strict: Workers) -> None:
