@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hardware.direction_finding.recordings import RecordedSweep, Recording, read_recording
 from hardware.direction_finding.sweep import SweepError, assemble_sweep
@@ -29,7 +30,7 @@ from hardware.reasons.iq_recording import (
 from hardware.reasons.union import RecordingReason
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.rotation_headings import annotated_headings, apart, headings_from
-from hardware.sdr.sigmf_file import SigmfRecording, load_sigmf
+from hardware.sdr.sigmf_file import Samples, SigmfRecording, load_sigmf
 from hardware.sdr.sigmf_names import is_sigmf
 from hardware.sdr.spectrum import SpectrumError, ToneMeter, ToneSetting, averaged_spectrum
 
@@ -39,6 +40,8 @@ HEARD_DB = 6.0
 """A carrier that never stands this far above the noise was not received."""
 FOUND_DB = 10.0
 SPECTRUM_SIZE = 4096
+PIECE = 2**20
+"""Samples that are looked at together; a multiple of half a window of the spectrum."""
 DC_BINS = 8
 """Cheap receivers have a spike at the centre of the band, this many bins wide to either side."""
 UNKNOWN_PLACE = Place(0.0, 0.0)
@@ -102,11 +105,15 @@ def _refuse_unusable_samples(recorded: SigmfRecording) -> None:
     file = str(recorded.path)
     if recorded.sample_rate_hz < SLOWEST_HZ:
         raise RecordingError(RecordingUnusable(file, SampleRateTooLow(recorded.sample_rate_hz, SLOWEST_HZ)))
-    bad = ~np.isfinite(recorded.samples)
-    if bad.any():
-        first_s = int(np.argmax(bad)) / recorded.sample_rate_hz
-        raise RecordingError(SamplesNotNumbers(file, int(bad.sum()), first_s))
-    if not recorded.samples.any():
+    bad, first, heard = 0, 0, False
+    for k, part in enumerate(recorded.samples.parts(PIECE)):
+        wrong = np.flatnonzero(~np.isfinite(part))
+        if wrong.size and not bad:
+            first = k * PIECE + int(wrong[0])
+        bad, heard = bad + wrong.size, heard or bool(part.any())
+    if bad:
+        raise RecordingError(SamplesNotNumbers(file, bad, first / recorded.sample_rate_hz))
+    if not heard:
         raise RecordingError(SamplesUnusable(file, "zero"))
 
 
@@ -114,7 +121,7 @@ def _strongest_hz(recorded: SigmfRecording) -> float:
     """The strongest line of the mean spectrum, the receiver's spike at the centre only when there is nothing else."""
     size = min(SPECTRUM_SIZE, 2 ** int(math.log2(max(recorded.samples.size, 2))))
     window = np.hanning(size + 1)[:-1]
-    spectrum = averaged_spectrum(recorded.samples, window)
+    spectrum = mean_spectrum(recorded.samples, window)
     bins_hz = np.fft.fftfreq(size, 1.0 / recorded.sample_rate_hz)
     noise = float(np.median(spectrum))
     width_hz = recorded.sample_rate_hz / size
@@ -124,6 +131,18 @@ def _strongest_hz(recorded: SigmfRecording) -> float:
         if spectrum[peak] > 10.0 ** (FOUND_DB / 10.0) * noise:
             return recorded.centre_hz + float(bins_hz[peak])
     raise RecordingError(NoSignalFound(str(recorded.path), FOUND_DB))
+
+
+def mean_spectrum(samples: Samples, window: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) averaged_spectrum of all of them, read piece by piece: each reaches half a window into the next, where
+    windows overlap."""
+    total, counted = np.zeros(window.size), 0
+    for first in range(0, samples.size, PIECE):
+        part = samples.part(first, first + PIECE + window.size // 2)
+        if part.size >= window.size:
+            windows = 2 * (part.size - window.size) // window.size + 1
+            total, counted = total + windows * averaged_spectrum(part, window), counted + windows
+    return total / counted
 
 
 def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> list[PowerSample]:
@@ -166,5 +185,5 @@ def _blocks(recorded: SigmfRecording) -> Iterator[IqBlock]:
         gap_s = recorded.time_of(begin) - (recorded.time_of(begin - 1) + 1.0 / rate) if begin > 0 else 0.0
         lost = 1 if abs(gap_s) > 1.0 / rate else 0
         for first in range(begin, end, size):
-            part = recorded.samples[first : min(first + size, end)]
+            part = recorded.samples.part(first, min(first + size, end))
             yield IqBlock(recorded.time_of(first), part, clipped_at_full_scale(part), lost if first == begin else 0)

@@ -6,7 +6,7 @@ import errno
 import json
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -49,12 +49,36 @@ class Azimuth:
     azimuth_deg: float
 
 
+class Samples:
+    """Of a recording, read from its file piece by piece: as complex64 they take four times as much as on most disks.
+
+    size: how many there are; of several channels those of all, in turn.
+    """
+
+    def __init__(self, recording: sigmf.SigMFFile) -> None:
+        self._recording = recording
+        self.size = recording.sample_count * recording.num_channels
+
+    def part(self, first: int, end: int) -> NDArray[np.complex64]:
+        """(end - first,), 1.0 = full scale; fewer at the end of the recording."""
+        channels, end = self._recording.num_channels, min(end, self.size)
+        if end <= first:
+            return np.empty(0, np.complex64)
+        begin = first // channels
+        read = self._recording.read_samples(begin, -(-end // channels) - begin)
+        return np.asarray(read, dtype=np.complex64).ravel()[first - begin * channels :][: end - first]
+
+    def parts(self, length: int) -> Iterator[NDArray[np.complex64]]:
+        """All of them, `length` at a time, fewer in the last."""
+        return (self.part(first, first + length) for first in range(0, self.size, length))
+
+
 @dataclass(frozen=True, slots=True)
 class SigmfRecording:
-    """samples: (n,) complex64, 1.0 = full scale. segments: at least one, the first from sample 0 on, ascending."""
+    """segments: at least one, the first from sample 0 on, ascending."""
 
     path: Path
-    samples: NDArray[np.complex64]
+    samples: Samples
     sample_rate_hz: float
     centre_hz: float
     segments: tuple[Segment, ...]
@@ -97,20 +121,21 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     if not isinstance(centre, int | float) or not math.isfinite(centre):
         raise _unusable(path, "core:frequency", centre)
     try:
-        samples = recording.read_samples()
+        samples = Samples(recording)
+        first = recording.read_samples(0, 1) if samples.size else None
     except (OSError, ValueError, KeyError, TypeError, sigmf.error.SigMFError) as error:
         raise RecordingError(FileUnreadable(str(path), str(error))) from error
-    if not np.iscomplexobj(samples):
-        raise RecordingError(SamplesUnusable(str(path), "real"))
-    if samples.size == 0:
+    if first is None:
         raise RecordingError(SamplesUnusable(str(path), "none"))
+    if not np.iscomplexobj(first):
+        raise RecordingError(SamplesUnusable(str(path), "real"))
     return SigmfRecording(
         path,
-        np.asarray(samples, dtype=np.complex64).ravel(),
+        samples,
         float(rate),
         float(centre),
         tuple(Segment(int(c.get(sigmf.SAMPLE_START_KEY, 0)), _time(path, c)) for c in captures),
-        _azimuths(path, recording, int(samples.size)),
+        _azimuths(path, recording, samples.size),
         _place(path, recording, captures),
     )
 

@@ -59,7 +59,7 @@ class SigmfSource:
         for start in range(0, self._samples.size, size):
             if self._closed:
                 return
-            part = self._samples[start : start + size]
+            part = self._samples.part(start, start + size)
             at_s = begin_s + start / self._rate
             if self._clock is not None:
                 await self._clock.sleep(max(at_s + part.size / self._rate - self._clock.now(), 0.0))

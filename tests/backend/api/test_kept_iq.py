@@ -65,7 +65,8 @@ async def test_what_was_imported_as_sigmf_is_exported_as_sigmf(client, mission_i
     whole = tmp_path / f"whole{ARCHIVE}"
     whole.write_bytes(answer.content)
     again = load_sigmf(whole)  # which judges it by the schema of SigMF
-    assert np.array_equal(again.samples, np.fromfile(turn.with_suffix(DATA), np.complex64))
+    kept = again.samples.part(0, again.samples.size)
+    assert np.array_equal(kept, np.fromfile(turn.with_suffix(DATA), np.complex64))
     assert len(again.azimuths) == 40
 
 

@@ -17,8 +17,9 @@ from hardware.readings import Place
 from hardware.reasons.iq_recording import HeadingsOfOtherLength, StrongestUsed
 from hardware.reasons.table import CellUnusable
 from hardware.sdr.pulses import PulseSetting
-from hardware.sdr.rotation import IqReading, read_rotation, read_sweeps
-from hardware.sdr.sigmf_file import Azimuth, write_sigmf
+from hardware.sdr.rotation import SPECTRUM_SIZE, IqReading, mean_spectrum, read_rotation, read_sweeps
+from hardware.sdr.sigmf_file import Azimuth, load_sigmf, write_sigmf
+from hardware.sdr.spectrum import averaged_spectrum
 
 RATE_HZ = 12_000.0
 CENTRE_HZ = 148_500_000.0
@@ -198,3 +199,19 @@ def test_missing_parts_are_named(tmp_path: Path) -> None:
         read_rotation(path)
     with pytest.raises(RecordingError, match=r"lacks its file gone.sigmf-meta"):
         read_rotation(tmp_path / "gone.sigmf-data")
+
+
+def test_a_recording_read_in_pieces_is_the_whole_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    iq = turn_iq(140.0)
+    meta = write_sigmf(tmp_path / "turn", iq, RATE_HZ, CENTRE_HZ, START_S, azimuths_of_turn(), PLACE)
+    samples = load_sigmf(meta).samples
+    assert np.array_equal(np.concatenate([*samples.parts(7_001)]), iq)
+    assert np.array_equal(samples.part(iq.size - 5, iq.size + 5), iq[-5:])
+    assert samples.part(iq.size, iq.size + 5).size == 0
+    whole = read_rotation(meta)
+    monkeypatch.setattr("hardware.sdr.rotation.PIECE", SPECTRUM_SIZE)
+    pieces = read_rotation(meta)
+    assert pieces.remarks == whole.remarks
+    assert np.array_equal(pieces.sweeps[0].sweep.power_db, whole.sweeps[0].sweep.power_db)
+    window = np.hanning(SPECTRUM_SIZE)
+    assert np.allclose(mean_spectrum(samples, window), averaged_spectrum(iq, window), rtol=1e-12)
