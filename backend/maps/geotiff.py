@@ -1,4 +1,4 @@
-"""A GeoTIFF of heights, read once when it is uploaded: whole, as untrusted input, into a grid of our own.
+"""A GeoTIFF of heights, read once when it is uploaded: whole, as untrusted input, into a grid of our own on disk.
 
 Pillow decodes it (libtiff: tiles and strips, deflate, LZW, Zstandard, predictors 2 and 3); where it lies is read from
 its GeoKeys (OGC GeoTIFF 1.1). Pillow misreads big-endian samples through libtiff, so those are refused.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import os
 import warnings
 from pathlib import Path
 from typing import Any, cast
@@ -23,6 +24,10 @@ from backend.terrain import Terrain
 
 MOST_PIXELS = 40_000_000
 MOST_TILE_SIDE = 4096
+OUT_OF_MEMORY = ("decoder error -9", "out of memory")
+"""As Pillow's decoders say it."""
+BAND = 128
+"""Rows that are looked at together: beside the picture itself little must lie in memory."""
 COARSEST_DEG = 0.01
 LOWEST_M, HIGHEST_M = -500.0, 9_000.0
 NO_DATA = (-32768.0, -32767.0, -9999.0, 32767.0)
@@ -41,8 +46,9 @@ def refused(fault: GeoTiffFault) -> MapRefused:
     return MapRefused(GeoTiffUnusable(fault))
 
 
-def read_geotiff(path: Path, name: str) -> Terrain:
-    """Its heights, unknown ones as NaN. Raises MapRefused. Takes seconds, ten bytes a pixel: not on an event loop."""
+def read_geotiff(path: Path, name: str, heights: Path) -> Terrain:
+    """Its heights, unknown ones as NaN, written to `heights` (npy) and read from there. Raises MapRefused. Takes
+    seconds, five bytes a pixel: not on an event loop."""
     with path.open("rb") as file:
         if file.read(2) == b"MM":
             raise refused("big_endian")
@@ -54,13 +60,16 @@ def read_geotiff(path: Path, name: str) -> Terrain:
                 tags = dict(picture.tag_v2)
                 _check_form(picture, tags)
                 north, west, lat_step, lon_step = _where(tags, picture.width, picture.height)
-                raw = np.array(picture, dtype=np.float32)
+                picture.load()
         except MapRefused:
             raise
         except UnidentifiedImageError as error:
             raise refused("sample_type") from error
+        except OSError as error:
+            if any(words in str(error) for words in OUT_OF_MEMORY):
+                raise MemoryError from error
+            raise refused("damaged") from error
         except (
-            OSError,
             ValueError,
             TypeError,
             KeyError,
@@ -70,9 +79,10 @@ def read_geotiff(path: Path, name: str) -> Terrain:
             ArithmeticError,
         ) as error:
             raise refused("damaged") from error
-        except (MemoryError, Image.DecompressionBombError) as error:
+        except Image.DecompressionBombError as error:
             raise refused("too_many_pixels") from error
-    return Terrain(north, west, lat_step, lon_step, _heights(raw, tags.get(GDAL_NO_DATA)), (name,))
+    _keep(picture, tags.get(GDAL_NO_DATA), heights)
+    return Terrain(north, west, lat_step, lon_step, np.load(heights, mmap_mode="r"), (name,))
 
 
 def _check_form(picture: TiffImageFile, tags: dict[int, Any]) -> None:
@@ -123,18 +133,33 @@ def _geo_keys(directory: Any) -> dict[int, int]:
     return {key: value for key, location, _, value in rows if location == 0}
 
 
-def _heights(raw: NDArray[np.float32], named: Any) -> NDArray[np.float32]:
-    """Unknown values become NaN, in place. Raises MapRefused for values that are no heights."""
-    unknown = ~np.isfinite(raw) | (np.abs(raw) > 1e30)
-    for value in _no_data(named):
-        unknown |= raw == value
-    if unknown.all():
+def _keep(picture: TiffImageFile, named: Any, heights: Path) -> None:
+    """Band by band, unknown values as NaN. Raises MapRefused for values that are no heights."""
+    width, height = picture.size
+    about = {"descr": np.lib.format.dtype_to_descr(np.dtype(np.float32)), "fortran_order": False}
+    lowest, highest = math.inf, -math.inf
+    with heights.open("wb") as file:
+        np.lib.format.write_array_header_2_0(file, {**about, "shape": (height, width)})
+        for top in range(0, height, BAND):
+            band = np.array(picture.crop((0, top, width, min(top + BAND, height))), dtype=np.float32)
+            known = _known(band, named)
+            band[~known] = np.nan
+            lowest = min(lowest, float(band.min(where=known, initial=np.inf)))
+            highest = max(highest, float(band.max(where=known, initial=-np.inf)))
+            file.write(band.tobytes())
+        file.flush()
+        os.fsync(file.fileno())
+    if highest < lowest:
         raise refused("no_heights")
-    raw[unknown] = np.nan
-    lowest, highest = float(np.nanmin(raw)), float(np.nanmax(raw))
     if lowest < LOWEST_M or highest > HIGHEST_M:
         raise MapRefused(HeightsImplausible(lowest, highest))
-    return raw
+
+
+def _known(band: NDArray[np.float32], named: Any) -> NDArray[np.bool_]:
+    known = np.isfinite(band) & (np.abs(band) <= 1e30)
+    for value in _no_data(named):
+        known &= band != value
+    return known
 
 
 def _no_data(named: Any) -> list[np.float32]:

@@ -181,11 +181,7 @@ def read_terrain(path: Path, name: str, heights: Path) -> dict[str, Any]:
     if not tiff:
         Terrarium(path, name).check()
         return {"format": "terrarium"}
-    read = read_geotiff(path, name)
-    with heights.open("wb") as file:
-        np.save(file, read.heights)
-        file.flush()
-        os.fsync(file.fileno())
+    read = read_geotiff(path, name, heights)
     return {"format": "geotiff", "grid": [read.north_deg, read.west_deg, read.lat_step_deg, read.lon_step_deg]}
 
 

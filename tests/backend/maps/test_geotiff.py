@@ -24,7 +24,7 @@ RELIEF = (300.0 + 3.25 * ROWS - 1.5 * COLUMNS).astype(np.float32)
 def read(tmp_path: Path, content: bytes):
     path = tmp_path / "upload.part"
     path.write_bytes(content)
-    return read_geotiff(path, "made")
+    return read_geotiff(path, "made", tmp_path / "heights.npy")
 
 
 def why(tmp_path: Path, content: bytes):
@@ -45,6 +45,29 @@ def test_what_products_use_is_read_exactly(
     heights = RELIEF.astype(kind)
     found = read(tmp_path, geotiff(heights, compressed=compressed, predictor=predictor, tile=tile))
     assert np.array_equal(found.heights, heights.astype(np.float32))
+
+
+def test_a_picture_is_kept_band_by_band(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "BAND", 16)
+    heights = RELIEF.copy()
+    heights[-1, -1] = np.nan
+    assert np.array_equal(read(tmp_path, geotiff(heights)).heights, heights, equal_nan=True)
+    heights[-1, -1] = module.HIGHEST_M + 1.0
+    assert why(tmp_path, geotiff(heights)) == HeightsImplausible(float(np.nanmin(heights)), module.HIGHEST_M + 1.0)
+
+
+def test_what_the_machine_lacks_is_not_said_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "upload.part"
+    path.write_bytes(geotiff(RELIEF))
+    with pytest.raises(FileNotFoundError):
+        read_geotiff(path, "made", tmp_path / "nowhere" / "heights.npy")
+
+    def exhausted(_: object) -> None:
+        raise OSError("decoder error -9")
+
+    monkeypatch.setattr("PIL.TiffImagePlugin.TiffImageFile.load", exhausted)
+    with pytest.raises(MemoryError):
+        read(tmp_path, path.read_bytes())
 
 
 @pytest.mark.parametrize("point", [True, False])
