@@ -23,7 +23,7 @@ from backend.bearing_file import read_bearing_file
 from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
 from backend.reasons import request as reasons
 from backend.search.errors import MissionInputError
-from backend.search.importing import Upload, imported_before
+from backend.search.importing import Upload, imported_before, must_be_few
 from backend.spec import Id, Model, Place
 from backend.wire.resources import ImportedSweep, RecordingImport
 from backend.workers import Workers
@@ -127,7 +127,7 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
         recording = await workers.run(_parsed, names, form.tag, form.frequency_hz, pulses)
     except (RecordingError, SpectrumError) as error:
         raise MissionInputError(renamed(error.reason, owners), "files") from error
-    pattern = None if form.antenna is None else await _pattern(form.antenna, workers)
+    pattern = None if form.antenna is None else await _pattern(form.antenna, workers, folder)
     first = next(iter(names.values()))
     return Upload(
         recording_id,
@@ -141,12 +141,23 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
     )
 
 
-async def _pattern(file: UploadFile, workers: Workers) -> AntennaPattern:
+async def _pattern(file: UploadFile, workers: Workers, folder: Path) -> AntennaPattern:
     """Raises MissionInputError."""
+    path = folder / "antenna"
+    await asyncio.to_thread(_put, file, path)
     try:
-        return await workers.run(parse_pattern, _called(file), decoded(await file.read()))
+        return await workers.run(_parsed_pattern, path, _called(file))
     except PatternError as error:
         raise MissionInputError(error.reason, "antenna") from error
+
+
+def _parsed_pattern(path: Path, called: str) -> AntennaPattern:
+    return parse_pattern(called, decoded(path.read_bytes()))
+
+
+def _put(file: UploadFile, path: Path) -> None:
+    with path.open("wb") as stream:
+        shutil.copyfileobj(file.file, stream)
 
 
 def _called(file: UploadFile) -> str:
@@ -167,8 +178,7 @@ def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:
         path = folder / (f"recording{ending}" if ending else ("headings.csv" if sigmf else "recording.csv"))
         if path in kept:
             raise MissionInputError(reasons.TwoRecordings(kept[path], name), "files")
-        with path.open("wb") as stream:
-            shutil.copyfileobj(file.file, stream)
+        _put(file, path)
         kept[path] = name
     return dict(sorted(kept.items(), key=lambda item: item[0].name == "headings.csv"))
 
@@ -199,6 +209,7 @@ def _parsed(
     headings = next((path for path in names if path.name == "headings.csv"), None)
     bearings = None if is_sigmf(recording) or headings is not None else read_bearing_file(recording, tag)
     read = bearings or read_sweeps(recording, tag, IqReading(headings, frequency_hz, pulses))
+    must_be_few(max(len(read.sweeps), len(read.bearings)))
     read = replace(read, remarks=listed(recording, read.remarks))
     if is_sigmf(recording) or (frequency_hz is None and pulses is None):
         return read

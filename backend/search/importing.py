@@ -95,11 +95,16 @@ def imported_before(recorded: Sequence[Recorded], recording_id: str) -> list[Rec
     return []
 
 
+def must_be_few(pieces: int) -> None:
+    """Sweeps or bearings of one recording. Raises MissionInputError."""
+    if pieces > MOST_SWEEPS:
+        raise MissionInputError(reasons.RecordingTooLong(pieces, MOST_SWEEPS), "file")
+
+
 def begun(state: SearchState, upload: Upload, pieces: int) -> tuple[EmitterSpec, list[Reason], int]:
     """Whose recording it is, what was remarked when it was read, and the number of the last place before it. pieces:
     its sweeps or bearings. Raises MissionInputError for too many, and for an emitter that is not sought."""
-    if pieces > MOST_SWEEPS:
-        raise MissionInputError(reasons.RecordingTooLong(pieces, MOST_SWEEPS), "file")
+    must_be_few(pieces)
     remarks: list[Reason] = list(upload.recording.remarks)
     last = max([state.place_number, *(bearing.place_number for bearing in state.measured)])
     return _emitter_of(state.mission, upload.emitter_id), remarks, last

@@ -7,7 +7,7 @@ from __future__ import annotations
 import codecs
 import csv
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -129,6 +129,7 @@ def read_table(path: Path | str) -> Table:
     except OSError as error:
         raise RecordingError(FileUnreadable(str(path), error.strerror or str(error))) from error
     text = decoded(raw)
+    del raw
     if "\0" in text[:4096]:
         raise RecordingError(FileUnusable(str(path), "not_text"))
     rows: list[Row] = []
@@ -141,7 +142,8 @@ def read_table(path: Path | str) -> Table:
             elif number == 1 and _SEPARATOR_TOLD.fullmatch(line.strip(" ")):
                 continue
             elif line.strip().strip(",;"):
-                rows.append(Row(number, cells_of(stripped)))
+                cells = cells_of(stripped)
+                rows.append(Row(number, _shared(cells, rows[-1].cells) if rows else cells))
         except csv.Error as error:  # a cell of more than 128 kB, for one
             raise RecordingError(FileUnusable(str(path), "not_text")) from error
     if not rows:
@@ -151,6 +153,13 @@ def read_table(path: Path | str) -> Table:
         width = max(between_blanks)
         rows, comments = ([_parted_at_blanks(row, width) for row in some] for some in (rows, comments))
     return Table(path, tuple(rows), tuple(comments))
+
+
+def _shared(cells: tuple[str, ...], before: tuple[str, ...]) -> tuple[str, ...]:
+    """The same cells; what says what the row before says takes no memory."""
+    if len(cells) != len(before):
+        return cells
+    return tuple(old if old == new else new for old, new in zip(before, cells, strict=True))
 
 
 def _has_numbers_between_blanks(row: Row) -> bool:
@@ -180,9 +189,13 @@ def decoded(raw: bytes) -> str:
         return raw.decode("latin-1")
 
 
-def lines_of(text: str) -> list[str]:
+def lines_of(text: str) -> Iterator[str]:
     """As editors end them: a letter of some old code page that `str.splitlines` takes for an end is none."""
-    return _LINE_ENDS.split(text)
+    begin = 0
+    for end in _LINE_ENDS.finditer(text):
+        yield text[begin : end.start()]
+        begin = end.end()
+    yield text[begin:]
 
 
 def number_of(cell: str) -> float | None:
