@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.hostile_uploads --out docs/measurements
 
-`crossfix serve` in a process of its own flies the simulated vehicle. Each file of tests/doubles/hostile_files.py, and
-an overlay of 50 MB, is uploaded; meanwhile hold is ordered over and over, and each answer timed at the client. Memory
+`crossfix serve` in a process of its own flies the simulated vehicle. Each file of tests/doubles/hostile_files.py, those
+of 50 MB among them, is uploaded; meanwhile hold is ordered over and over, and each answer timed at the client. Memory
 is the resident set of the server and of the process that reads files, above what both took before the file; the latter
 has read a sound file of each kind then, so that its libraries are loaded. What stays in memory after the last file is
 a figure of its own. Fails when a file or an order gets no answer or a file an answer of the kind 5xx.
@@ -27,7 +27,18 @@ import psutil
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 from tests.benchmarks.under_attack import flight, ordered_s, quantile_ms
-from tests.doubles.hostile_files import HostileFile, archive, hostile_files, kml, long_line, point, zipped
+from tests.doubles.hostile_files import (
+    HostileFile,
+    archive,
+    hostile_files,
+    kml,
+    large_files,
+    log_of_turns,
+    long_line,
+    point,
+    recording,
+    zipped,
+)
 from tests.system.console import Console
 
 LARGE_BYTES = 50 * 10**6
@@ -72,12 +83,13 @@ def sound_files() -> list[HostileFile]:
         HostileFile("a KMZ", "/api/overlays", zipped(placemark), True),
         HostileFile("an area", "/api/areas", json.dumps({"text": kml(area).decode()}).encode(), True),
         HostileFile("a map", "/api/maps", archive(b"{}"), True),
+        recording("a log of elsewhere", "log.csv", log_of_turns(1000)),
     ]
 
 
-async def uploaded(client: httpx.AsyncClient, file: HostileFile) -> int:
+async def uploaded(client: httpx.AsyncClient, file: HostileFile, mission_id: str) -> int:
     headers = {"content-type": file.kind}
-    return (await client.post(file.path, content=file.content, headers=headers, timeout=180)).status_code
+    return (await client.post(file.to(mission_id), content=file.content, headers=headers, timeout=180)).status_code
 
 
 async def measure(shown: Console, server: psutil.Process, file: HostileFile) -> Taken:
@@ -96,7 +108,7 @@ async def measure(shown: Console, server: psutil.Process, file: HostileFile) -> 
     beside = [asyncio.create_task(remember()), asyncio.create_task(order())]
     began = time.monotonic()
     async with httpx.AsyncClient(base_url=shown.url) as other:
-        taken.status = await uploaded(other, file)
+        taken.status = await uploaded(other, file, shown.mission_id)
     taken.answer_s = time.monotonic() - began
     await asyncio.sleep(2 * PAUSE_S)
     for task in beside:
@@ -108,11 +120,12 @@ async def measure(shown: Console, server: psutil.Process, file: HostileFile) -> 
 async def run(folder: Path) -> tuple[list[Taken], int]:
     """Of each file, and the bytes by which memory grew over all of them."""
     async with flight(folder) as (_, process, shown):
-        files = [HostileFile("an overlay of 50 MB", "/api/overlays", large_overlay(), False), *hostile_files()]
+        overlay = HostileFile("an overlay of 50 MB", "/api/overlays", large_overlay(), False)
+        files = [overlay, *large_files(), *hostile_files()]
         server = psutil.Process(process.pid)
         for sound in sound_files():
-            if not 200 <= await uploaded(shown.client, sound) < 300:
-                raise RuntimeError(f"refused, though sound: {sound.name}")
+            if (await uploaded(shown.client, sound, shown.mission_id) < 300) != sound.accepted:
+                raise RuntimeError(f"not as expected: {sound.name}")
         usual = resident_bytes(server)
         found = [await measure(shown, server, file) for file in files]
         return found, resident_bytes(server) - usual

@@ -5,14 +5,25 @@ from __future__ import annotations
 import io
 import json
 import math
+import tarfile
 import zipfile
 from typing import NamedTuple
 from unittest.mock import patch
 
+import numpy as np
 from pmtiles.tile import Compression, TileType, zxy_to_tileid
 from pmtiles.writer import Writer
 
 MEGABYTE = 10**6
+
+
+BOUNDARY = "crossfix-hostile"
+RECORDINGS, WAYS = "/api/missions/{mission}/recordings", "/api/missions/{mission}/ways"
+KINDS = {
+    **dict.fromkeys(("/api/overlays", "/api/maps", "/api/terrain", WAYS), "application/octet-stream"),
+    RECORDINGS: f"multipart/form-data; boundary={BOUNDARY}",
+    "/api/bundles": "application/zip",
+}
 
 
 class HostileFile(NamedTuple):
@@ -26,7 +37,23 @@ class HostileFile(NamedTuple):
     @property
     def kind(self) -> str:
         """Of its content."""
-        return "application/octet-stream" if self.path in ("/api/overlays", "/api/maps") else "application/json"
+        return KINDS.get(self.path, "application/json")
+
+    def to(self, mission_id: str) -> str:
+        """The path with this mission in it."""
+        return self.path.format(mission=mission_id)
+
+
+def recording(name: str, filename: str, content: bytes, **beside: bytes) -> HostileFile:
+    """Refused. beside: other files of the form by their field."""
+    parts = [("files", filename, content), *((field, f"{field}.csv", other) for field, other in beside.items())]
+    body = b"".join(
+        f'--{BOUNDARY}\r\nContent-Disposition: form-data; name="{field}"; filename="{called}"\r\n\r\n'.encode()
+        + inside
+        + b"\r\n"
+        for field, called, inside in parts
+    )
+    return HostileFile(name, RECORDINGS, body + f"--{BOUNDARY}--\r\n".encode(), False)
 
 
 def kml(inside: str) -> bytes:
@@ -79,6 +106,75 @@ def deep_metadata(depth: int) -> bytes:
         return archive(b"{}")
 
 
+def log_of_turns(rows: int) -> bytes:
+    """Heading and power ten times a second, at a new place every 72 seconds."""
+    turning = [
+        f"{1.7e9 + 0.1 * k:.1f},{0.5 * k % 360:.1f},{-60 + 10 * math.cos(math.radians(0.5 * k)):.2f},"
+        f"{50 + 0.0005 * (k // 720):.6f},7.0"
+        for k in range(rows)
+    ]
+    return "\n".join(["time_s,heading_deg,power_db,lat,lon", *turning]).encode()
+
+
+def bearings(count: int) -> bytes:
+    taken = [f"{1.7e9 + k},{50 + 0.00001 * (k % 100):.6f},7.0,{k % 360},7" for k in range(count)]
+    return "\n".join(["time_s,lat,lon,bearing_deg,sigma_deg", *taken]).encode()
+
+
+def noise_iq(size: int) -> bytes:
+    """A SigMF archive of a turn in which nothing is heard, one byte for each half of a sample."""
+    told = {
+        "global": {"core:datatype": "ci8", "core:sample_rate": 1e6, "core:version": "1.0.0"},
+        "captures": [{"core:sample_start": 0, "core:frequency": 150e6}],
+        "annotations": [
+            {"core:sample_start": k * size // 144, "core:sample_count": size // 144, "antenna:azimuth_angle": 5 * k}
+            for k in range(72)
+        ],
+    }
+    data = np.random.default_rng(1).integers(-20, 20, size, dtype=np.int8).tobytes()
+    stream = io.BytesIO()
+    with tarfile.open(fileobj=stream, mode="w") as tar:
+        for name, content in (("noise.sigmf-meta", json.dumps(told).encode()), ("noise.sigmf-data", data)):
+            member = tarfile.TarInfo(name)
+            member.size = len(content)
+            tar.addfile(member, io.BytesIO(content))
+    return stream.getvalue()
+
+
+def bundle_of(size: int) -> bytes:
+    """A bundle whose mission is so many bytes of numbers."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as box:
+        box.writestr("mission.json", b"[" + b"1," * (size // 2) + b"1]")
+    return stream.getvalue()
+
+
+def paths(count: int) -> bytes:
+    line = b"""{"type": "Feature", "properties": {"highway": "path"},
+     "geometry": {"type": "LineString", "coordinates": [[7.0, 50.0], [7.001, 50.001]]}}"""
+    return b'{"type": "FeatureCollection", "features": [' + b",".join([line] * count) + b"]}"
+
+
+def large_files() -> list[HostileFile]:
+    """As large as files may be, or larger than theirs may."""
+    size = 50 * MEGABYTE
+    random = np.random.default_rng(2).bytes(size)
+    return [
+        recording("a log of 50 MB", "log.csv", log_of_turns(1_200_000)),
+        recording("a million bearings", "bearings.csv", bearings(10**6)),
+        recording("ends of lines", "log.csv", b"\n" * size),
+        recording("comments", "log.csv", b"#1\n" * (size // 3) + b"1,2"),
+        recording("one cell", "log.csv", b"1" * size),
+        recording("no text", "log.csv", random),
+        recording("IQ of 50 MB", "noise.sigmf", noise_iq(size)),
+        recording("a pattern of 50 MB", "log.csv", log_of_turns(1000), antenna=b"1,2\n" * (size // 4)),
+        HostileFile("a bundle of 90 MB unpacked", "/api/bundles", bundle_of(90 * MEGABYTE), False),
+        HostileFile("150,000 paths", WAYS, paths(150_000), False),
+        HostileFile("no GeoTIFF", "/api/terrain", b"II*\x00" + random, False),
+        HostileFile("no map", "/api/maps", b"PMTiles\x03" + random, False),
+    ]
+
+
 def hostile_files() -> list[HostileFile]:
     """What is sent, and to where: files, and requests whose JSON is the burden."""
     few_blanks, blanks = (kml(point(f"7,50{' ' * count}")) for count in (40_000, 300_000))
@@ -108,4 +204,5 @@ def hostile_files() -> list[HostileFile]:
         HostileFile(
             "as many as an export may have", "/api/recordings/read", b"[" + b"1," * 8 * MEGABYTE + b"1]", False
         ),
+        recording("30,000 bearings", "bearings.csv", bearings(30_000)),
     ]

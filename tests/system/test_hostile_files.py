@@ -19,7 +19,7 @@ def speedup() -> float:
 
 async def upload(operator: Console, file: HostileFile) -> int:
     reply = await operator.client.post(
-        file.path, content=file.content, headers={"content-type": file.kind}, timeout=120
+        file.to(operator.mission_id), content=file.content, headers={"content-type": file.kind}, timeout=120
     )
     if reply.status_code >= 400:
         assert reply.json()["reason"]["code"], reply.text
