@@ -1,6 +1,7 @@
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vitest/config";
 import { serviceWorker } from "./pwa/plugin";
+import { minifyAgain } from "./scripts/minifyAgain";
 
 const server = process.env.CROSSFIX_SERVER ?? "http://127.0.0.1:8600";
 
@@ -30,7 +31,7 @@ const together = [
 
 export default defineConfig(({ command }) => ({
   base: "./",
-  plugins: [serviceWorker(here("public"))],
+  plugins: [minifyAgain(), serviceWorker(here("public"))],
   worker: { format: "es" },
   resolve: { alias: command === "build" ? builtFromSources : [] },
   // MapLibre declares fields that its base classes fill
@@ -40,7 +41,7 @@ export default defineConfig(({ command }) => ({
     sourcemap: false,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
-    rolldownOptions: { output: { codeSplitting: { groups: [map, bar, ...together] } } },
+    rolldownOptions: { checks: { pluginTimings: false }, output: { codeSplitting: { groups: [map, bar, ...together] } } },
   },
   server: { host: "127.0.0.1", proxy: { "/api": { target: server, ws: true } } },
   test: {
