@@ -24,9 +24,10 @@ const builtFromSources = [
 
 /** What is loaded together, and pages that are seldom opened: files of a few kilobytes pack worse each by itself. */
 const together = [
+  { name: "edit", test: /src\/(edit\/(?!pro|path)|pages\/(Area|Edit))/, includeDependenciesRecursively: false },
   { name: "reasons.de", test: /src\/i18n\/(de\.ts|german|reasons\.de)/, includeDependenciesRecursively: false },
   { name: "reasons.en", test: /src\/i18n\/(pages|reasons)\.en/, includeDependenciesRecursively: false },
-  { name: "seldom", test: /src\/pages\/(Area|Calibration|Compare|Health|Join|Maps)Page/, includeDependenciesRecursively: false },
+  { name: "seldom", test: /src\/pages\/(Calibration|Compare|Health|Join|Maps)Page/, includeDependenciesRecursively: false },
 ];
 
 export default defineConfig(({ command }) => ({
