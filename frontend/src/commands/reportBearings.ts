@@ -4,6 +4,7 @@ import { newCommandId } from "../sources/api";
 import { RequestFailed } from "../sources/problem";
 import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } from "../sources/reportsApi";
 import { add, answered, lastOf, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
+import { keep } from "../state/kept";
 import { me, refreshSession, session } from "../state/session";
 
 const KEY = "crossfix.bearings";
@@ -37,12 +38,7 @@ let keeps = true;
 function change(next: (queue: Queue) => Queue): void {
   const kept = keeps ? stored() : null;
   queue.value = next(kept === null ? queue.peek() : read(kept));
-  try {
-    localStorage.setItem(KEY, JSON.stringify(queue.peek()));
-    keeps = true;
-  } catch {
-    keeps = false;
-  }
+  keeps = keep(KEY, queue.peek());
 }
 
 /** The server's own no; anything else is a link that may come back. */

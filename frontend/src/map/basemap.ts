@@ -11,9 +11,13 @@ const KEY = "crossfix.basemap";
 export const basemap = signal<string | null>(localStorage.getItem(KEY));
 
 export function chooseBasemap(id: string | null): void {
-  if (id === null) localStorage.removeItem(KEY);
-  else localStorage.setItem(KEY, id);
   basemap.value = id;
+  try {
+    if (id === null) localStorage.removeItem(KEY);
+    else localStorage.setItem(KEY, id);
+  } catch {
+    // a full storage: it is shown as long as the page
+  }
 }
 
 /** Puts the chosen package under everything else of a loaded map. Returns what could not be drawn. */

@@ -1,6 +1,7 @@
 // Overlays chosen on the maps page: points, lines and areas from GeoJSON or KML files.
 import { effect, signal } from "@preact/signals";
 import { overlay } from "../sources/mapsApi";
+import { keep } from "../state/kept";
 
 const KEY = "crossfix.overlays";
 
@@ -18,7 +19,7 @@ export const shownOverlays = signal<GeoJSON.FeatureCollection>({ type: "FeatureC
 
 effect(() => {
   const ids = overlayIds.value;
-  localStorage.setItem(KEY, JSON.stringify(ids));
+  keep(KEY, ids);
   void Promise.allSettled(ids.map(overlay)).then((loaded) => {
     if (overlayIds.peek() !== ids) return;
     const features = loaded.flatMap((one) => (one.status === "fulfilled" ? one.value.features : []));

@@ -13,6 +13,7 @@ import { advised, advisedWay } from "../state/advice";
 import { isOwn, lastOf, pending, type Stage } from "../state/bearingQueue";
 import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
+import { keep } from "../state/kept";
 import { emittersThen, look } from "../state/moment";
 import { compassState, magneticDeg, startCompass, stopCompass } from "../state/phoneCompass";
 import { missionAddress } from "../state/route";
@@ -49,13 +50,7 @@ function readReporter(): Reporter {
   }
 }
 
-function keepReporter(reporter: Reporter): void {
-  try {
-    localStorage.setItem(KEPT, JSON.stringify(reporter));
-  } catch {
-    // a private window: it is asked again
-  }
-}
+const keepReporter = (reporter: Reporter) => keep(KEPT, reporter);
 
 const turned = (degrees: number) => ((degrees % 360) + 360) % 360;
 

@@ -31,3 +31,10 @@ it("stays in its language when the words of another cannot be loaded, and says s
   expect(lost).toHaveBeenCalledExactlyOnceWith("de");
   expect(settings.value.language).toBe("en");
 });
+
+it("a change here leaves what another tab changed", () => {
+  localStorage.setItem("crossfix.settings", JSON.stringify({ ...settings.value, theme: "indoor" }));
+  dispatchEvent(new StorageEvent("storage", { key: "crossfix.settings" }));
+  change("units", "imperial");
+  expect(settings.value).toMatchObject({ theme: "indoor", units: "imperial" });
+});

@@ -4,6 +4,7 @@ import { type Language, setLanguage } from "../i18n";
 import type { CoordinateFormat } from "../units/coordinates";
 import type { UnitSystem } from "../units/quantities";
 import { coordinateFormat, unitSystem } from "../units/shown";
+import { keep } from "./kept";
 
 export interface Settings {
   theme: "outdoor" | "indoor";
@@ -47,7 +48,14 @@ export function readSettings(stored: string | null): Settings {
   return { ...read, theme: read.theme === "indoor" ? "indoor" : "outdoor" };
 }
 
-export const settings = signal<Settings>(readSettings(localStorage.getItem(KEY)));
+const stored = () => readSettings(localStorage.getItem(KEY));
+
+export const settings = signal<Settings>(stored());
+
+/** Another tab changed one: a change here would put back what it was before. */
+addEventListener("storage", ({ key }) => {
+  if (key === KEY) settings.value = stored();
+});
 
 export function change<K extends keyof Settings>(key: K, value: Settings[K]): void {
   settings.value = { ...settings.value, [key]: value };
@@ -66,7 +74,7 @@ export function applySettings(onLanguageLost: (wanted: Language) => void): void 
     }
   };
   effect(() => {
-    localStorage.setItem(KEY, JSON.stringify(settings.value));
+    keep(KEY, settings.value);
     document.documentElement.dataset.theme = settings.value.theme;
     document.documentElement.style.fontSize = `${settings.value.scale * 100}%`;
   });
