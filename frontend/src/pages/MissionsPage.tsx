@@ -135,6 +135,11 @@ function Row({ mission, editing, onEdit, onChanged }: RowProperties) {
   );
 }
 
+/** Nobody is led away from a page that they went to meanwhile. */
+function goIfHere(address: string): void {
+  if (route.peek().page === "missions") go(address);
+}
+
 /** The bundle of another installation, as a mission of this one. */
 function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }) {
   const [share, setShare] = useState<number | null>(null);
@@ -143,7 +148,7 @@ function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }
     setShare(0);
     try {
       const brought = await upload<MissionBrought>("/bundles", file, setShare, "application/zip");
-      if (route.peek().page === "missions") go(missionAddress(brought.mission_id));
+      goIfHere(missionAddress(brought.mission_id));
     } catch (error) {
       onProblem(asProblem(error));
       setShare(null);
@@ -184,7 +189,7 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
           opened.then(
             (recording) => {
               replays.set(recording.missionId, recording);
-              go(missionAddress(recording.missionId));
+              goIfHere(missionAddress(recording.missionId));
             },
             (error: unknown) => onProblem(t("missions.recordingBroken", { name: file.name, reason: problemWords(asProblem(error)) })),
           );
@@ -248,7 +253,7 @@ function Welcome({ children, onProblem }: { children: ComponentChildren; onProbl
   const [drafting, setDrafting] = useState(false);
   const draftOne = async () => {
     setDrafting(true);
-    await draftSuggested().then(go, (error: unknown) => onProblem(asProblem(error)));
+    await draftSuggested().then(goIfHere, (error: unknown) => onProblem(asProblem(error)));
     setDrafting(false);
   };
   return (
