@@ -14,6 +14,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
 
 MEADOW = "50.6234 7.2030\n50.6234 7.2060\n50.6250 7.2060\n50.6250 7.2030"
 IN_SECONDS = "50°37′31.1″ N 7°12′13.1″ E\n50°37′31.1″ N 7°12′15.1″ E\n50°37′33.1″ N 7°12′15.1″ E"
+TRIANGLE = '{"type": "Polygon", "coordinates": [[[7.203, 50.6234], [7.206, 50.6234], [7.206, 50.625]]]}'
 ALTITUDE = "field-flight-altitude_relative_m"
 
 
@@ -76,6 +77,7 @@ def test_a_file_that_cannot_be_read_keeps_the_mission_from_being_saved(editor: S
     for route in held:
         route.continue_()
     expect(editor.part("area-message")).to_contain_text("meadow.geojson")
+    expect(editor.part("edit-problem")).to_contain_text("meadow.geojson")
     expect(editor.part("save")).to_be_enabled()
     assert editor.page.url.endswith("#/new")
 
@@ -96,7 +98,7 @@ def test_a_number_being_typed_outlasts_an_answer_and_a_reload(editor: Screen) ->
     held: list[Route] = []
     editor.page.route("**/api/areas", lambda route: held.append(route))
     with editor.page.expect_request("**/api/areas"):
-        paste(editor, '{"type": "Polygon", "coordinates": [[[7.203, 50.6234], [7.206, 50.6234], [7.206, 50.625]]]}')
+        paste(editor, TRIANGLE)
     altitude = editor.part(ALTITUDE)
     altitude.fill("")
     altitude.press_sequentially("7")
@@ -139,3 +141,120 @@ def test_a_mission_saved_late_does_not_lead_away_from_the_next(server: Server, e
     assert "First" in [mission["name"] for mission in server.get("/api/missions")["missions"]]
     editor.page.reload()
     expect(editor.part("field-name")).to_have_value("Second")
+
+
+def test_a_new_area_in_flight_is_not_asked_of_while_it_is_being_drawn(server: Server, screen: Screen) -> None:
+    screen.go(f"#/mission/{server.draft()}/area")
+    screen.map_ready("edit-map")
+    expect(screen.part("area-size")).to_be_visible()
+    screen.part("draw-polygon").click()
+    for right, down in ((0.3, 0.3), (0.6, 0.3), (0.6, 0.6)):
+        screen.page.mouse.click(*screen.map_point(right, down, "edit-map"))
+    screen.part("outlook-ask").click()
+    expect(screen.part("area-problem")).to_contain_text("press Enter to finish")
+    expect(screen.part("outlook")).to_have_count(0)
+
+
+def test_a_file_being_read_for_another_mission_does_not_keep_this_one_from_being_saved(
+    server: Server, editor: Screen
+) -> None:
+    other = server.draft()
+    editor.page.route("**/api/areas", lambda _route: None)
+    with editor.page.expect_request("**/api/areas"):
+        paste(editor, TRIANGLE)
+    editor.go(f"#/mission/{other}/edit")
+    editor.part("field-name").fill("Saved meanwhile")
+    editor.part("save").click()
+    assert spec_of(server, editor)["name"] == "Saved meanwhile"
+
+
+def test_a_file_being_read_does_not_come_into_what_is_begun_after_discard(editor: Screen) -> None:
+    held: list[Route] = []
+    editor.part("field-name").fill("Half typed")
+    editor.page.reload()
+    editor.page.route("**/api/areas", lambda route: held.append(route))
+    with editor.page.expect_request("**/api/areas"):
+        paste(editor, TRIANGLE)
+    editor.part("discard").click()
+    expect(editor.part("field-name")).not_to_have_value("Half typed")
+    with editor.page.expect_response("**/api/areas"):
+        held[0].continue_()
+    editor.page.wait_for_timeout(300)
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "true")
+
+
+def test_a_preset_takes_the_place_of_what_cannot_be_read_in_its_fields(server: Server, editor: Screen) -> None:
+    editor.part("field-emitters-0-frequency_hz").fill("abc")
+    editor.part("field-sensor-sigma_deg").fill("7x")
+    editor.part("preset").select_option("beacon")
+    expect(editor.part("field-emitters-0-frequency_hz")).to_have_value("121.5")
+    expect(editor.part("field-sensor-sigma_deg")).to_have_value("7")
+    editor.part("save").click()
+    assert spec_of(server, editor)["emitters"][0]["frequency_hz"] == 121_500_000
+
+
+def test_what_is_marked_is_shown_when_the_mission_cannot_be_saved(editor: Screen) -> None:
+    speed, turn_rate = editor.part("field-planner-motion-speed_m_s"), editor.part("field-sensor-turn_rate_deg_s")
+    more = editor.page.locator("details.more")
+    more.filter(has=speed).locator("summary").click()
+    speed.fill("1x2")
+    speed.blur()
+    editor.page.reload()
+    expect(speed).to_be_visible()
+    more.filter(has=speed).locator("summary").click()
+    more.filter(has=turn_rate).locator("summary").click()
+    turn_rate.fill("5x")
+    more.filter(has=turn_rate).locator("summary").click()
+    expect(turn_rate).to_be_hidden()
+    editor.part("save").click()
+    expect(editor.part("edit-problem")).to_contain_text("marked below")
+    for field in (speed, turn_rate):
+        expect(field).to_be_visible()
+        expect(field).to_have_attribute("aria-invalid", "true")
+
+
+def test_a_list_that_was_typed_is_taken_by_a_save_that_does_not_leave_it(server: Server, editor: Screen) -> None:
+    editor.part("preset").select_option("wildlife")
+    editor.part("emitter-list").fill("150.1 lynx\n150.2 hare")
+    editor.evaluate("document.querySelector('form.side').requestSubmit()")
+    assert len(spec_of(server, editor)["emitters"]) == 2
+
+
+def test_what_is_wrong_with_one_mission_is_not_said_of_the_next(server: Server, screen: Screen) -> None:
+    kept, wrong = server.draft(), server.draft()
+    screen.go(f"#/mission/{kept}/edit")
+    screen.part("field-name").fill("Half typed")
+    screen.go(f"#/mission/{wrong}/edit")
+    expect(screen.part("field-name")).not_to_have_value("Half typed")
+    paste(screen, "nowhere")
+    screen.part("area-clear").click()
+    screen.part("save").click()
+    expect(screen.part("edit-problem")).to_be_visible()
+    expect(screen.part("area-message")).to_be_visible()
+    screen.go(f"#/mission/{kept}/edit")
+    expect(screen.part("field-name")).to_have_value("Half typed")
+    expect(screen.part("edit-problem")).to_have_count(0)
+    expect(screen.part("area-message")).to_have_count(0)
+
+
+def test_a_profile_is_taken_as_another_tab_left_it(editor: Screen) -> None:
+    editor.page.locator("details.more").filter(has=editor.part("profile-name")).locator("summary").click()
+    editor.part("profile-name").fill("quad")
+    editor.part("field-sensor-sigma_deg").fill("5")
+    editor.part("profile-save").click()
+    tab = editor.page.context.new_page()
+    tab.goto(editor.page.url)
+    tab.get_by_test_id("profile").wait_for()
+    editor.part("field-sensor-sigma_deg").fill("20")
+    editor.part("profile-save").click()
+    tab.get_by_test_id("profile").select_option("quad")
+    expect(tab.get_by_test_id("field-sensor-sigma_deg")).to_have_value("20")
+
+
+def test_what_is_typed_into_a_full_browser_stays_and_that_is_said(editor: Screen) -> None:
+    editor.evaluate("() => { Storage.prototype.setItem = () => { throw new DOMException('full') } }")
+    altitude = editor.part(ALTITUDE)
+    altitude.fill("33")
+    altitude.blur()
+    expect(altitude).to_have_value("33")
+    expect(editor.part("not-stored")).to_be_visible()

@@ -4,7 +4,7 @@ import { asProblem } from "../commands/send";
 import { reasonText, t } from "../i18n";
 import { problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
-import type { RequestFailed } from "../sources/problem";
+import { localProblem, RequestFailed } from "../sources/problem";
 import { areaM2, cornerCount, cornersFromText, polygonsOf, type Rings } from "../state/areas";
 import { settings } from "../state/settings";
 import { formatArea } from "../units/quantities";
@@ -45,16 +45,21 @@ async function readArea(text: string, name: string, kind: What): Promise<ReadFil
 
 /** Puts what is read into the draft; returns what to tell. */
 const taken = (reading: Promise<ReadFile>, name: string): Promise<{ isRead: boolean; told: string[] }> =>
-  addRead(reading, ({ parts }) => {
-    for (const [kind, polygons] of parts) add(kind, polygons);
-  }).then(
+  addRead(
+    reading.catch((error: unknown) => {
+      throw unread(name, error);
+    }),
+    ({ parts }) => {
+      for (const [kind, polygons] of parts) add(kind, polygons);
+    },
+  ).then(
     ({ told }) => ({ isRead: true, told }),
-    (error: unknown) => ({ isRead: false, told: [importProblem(name, error)] }),
+    (error: unknown) => ({ isRead: false, told: [asProblem(error).detail] }),
   );
 
-const importProblem = (name: string, error: unknown): string => {
+const unread = (name: string, error: unknown): RequestFailed => {
   const reason = error instanceof NotAPlan ? t(error.flaw) : problemWords(asProblem(error));
-  return t("edit.importFailed", { name, reason });
+  return new RequestFailed(localProblem(t("edit.area"), t("edit.importFailed", { name, reason })));
 };
 
 /** A dropped or chosen file goes into what is being drawn; a note says what was left out or wrong. */

@@ -6,19 +6,19 @@ import { PlaceInOrder } from "../panels/PlaceInOrder";
 import { emitterName } from "../state/emitterName";
 import { importanceWords, inOrder, type Priorities, prioritiesOf } from "../state/importance";
 import type { EmitterSpec, MissionSpec } from "../wire";
-import { draft, shownFields, type, update } from "./draft";
+import { draft, shownFields, textBeside, type, update } from "./draft";
 import { EMITTER } from "./emitter";
 import { badLineWords, LIST, listOf, readList } from "./emitterList";
 
-/** What the list replaces: raw text of its first emitter's own fields. */
-const OWN = [`${EMITTER}.frequency_hz`, `${EMITTER}.label`];
+/** What the list replaces: its raw text, and that of its first emitter's own fields. */
+const OWN = [LIST, `${EMITTER}.frequency_hz`, `${EMITTER}.label`];
 
 /** The list as it is typed, of the draft that is on the page. */
 function take(text: string | undefined): void {
   const now = draft.peek();
   if (!now || text === undefined) return;
   const { emitters, bad } = readList(text, now.spec.emitters);
-  const kept = Object.fromEntries(Object.entries(now.text).filter(([path]) => path !== LIST && !OWN.includes(path)));
+  const kept = textBeside(now.text, (path) => OWN.includes(path));
   if (bad.length > 0 || emitters.length === 0) update({ ...now, text: { ...kept, [LIST]: text } });
   else update({ ...now, spec: { ...now.spec, emitters }, text: kept });
 }

@@ -2,7 +2,7 @@
 import { t } from "../i18n";
 import type { RequestFailed } from "../sources/problem";
 import type { EmitterSpec } from "../wire";
-import { draft, update } from "./draft";
+import { change, draft, type } from "./draft";
 import { firstEmitter } from "./emitter";
 import { FormField } from "./FormField";
 
@@ -12,15 +12,15 @@ const KINDS = ["still", "animal", "walking", "drifting"] as const satisfies read
 /** What is usual, m/s. */
 const PACE: Record<Movement["kind"], number> = { still: 0.2, animal: 0.2, walking: 1.2, drifting: 0.3 };
 
+const PACE_FIELD = "emitters.0.movement.speed_m_s";
+
 export function MovementField({ failed }: { failed: RequestFailed | null }) {
   const { spec } = draft.value!;
   const { kind } = firstEmitter(spec).movement;
   const choose = (chosen: Movement["kind"]) => {
-    const now = draft.peek()!;
-    const movement: Movement = { kind: chosen, speed_m_s: PACE[chosen] };
-    const emitters = now.spec.emitters.map((emitter) => ({ ...emitter, movement }));
-    const localization = { ...now.spec.localization, follow: chosen !== "still" && now.spec.localization.follow };
-    update({ ...now, spec: { ...now.spec, emitters, localization } });
+    change("emitters.all.movement", { kind: chosen, speed_m_s: PACE[chosen] } satisfies Movement);
+    type(PACE_FIELD, null);
+    if (chosen === "still") change("localization.follow", false);
   };
   return (
     <>
@@ -42,10 +42,7 @@ export function MovementField({ failed }: { failed: RequestFailed | null }) {
       {kind !== "still" && (
         <>
           {spec.emitters.length === 1 && (
-            <FormField
-              field={{ kind: "number", path: "emitters.0.movement.speed_m_s", label: "edit.pace", unit: "m/s", min: 0.01, max: 5 }}
-              failed={failed}
-            />
+            <FormField field={{ kind: "number", path: PACE_FIELD, label: "edit.pace", unit: "m/s", min: 0.01, max: 5 }} failed={failed} />
           )}
           <FormField field={{ kind: "switch", path: "localization.follow", label: "edit.follow" }} failed={failed} />
         </>

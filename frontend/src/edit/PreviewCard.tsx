@@ -57,7 +57,7 @@ export function PreviewCard() {
           type="button"
           data-testid="preview-run"
           disabled={state?.running || !draft.value?.hasArea}
-          onClick={() => void settledDraft().then((settled) => settled && askPreview(settled.spec))}
+          onClick={() => void askPreview(settledDraft())}
         >
           {t(state?.running ? "preview.running" : "preview.run")}
         </button>

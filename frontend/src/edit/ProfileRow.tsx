@@ -1,17 +1,20 @@
 // Choosing, keeping and removing equipment profiles.
 import { useState } from "preact/hooks";
 import { t } from "../i18n";
-import { draft, update } from "./draft";
-import { profileOf, profiles, removeProfile, saveProfile, takeBack, textBeside, withProfile } from "./profiles";
+import { draft, textBeside, update } from "./draft";
+import { NotStored } from "./NotStored";
+import { areStored, isSetBy, profileOf, profiles, readAgain, removeProfile, saveProfile, takeBack, withProfile } from "./profiles";
 
 export function ProfileRow() {
   const [name, setName] = useState("");
   const known = profiles.value;
   const use = (chosen: string) => {
+    readAgain();
     const now = draft.peek();
-    const profile = known.find((p) => p.name === chosen);
+    const profile = profiles.peek().find((p) => p.name === chosen);
     setName(chosen);
-    if (now && profile) update({ ...now, spec: withProfile(now.spec, profile), text: textBeside(now.text, profile) });
+    if (now && profile)
+      update({ ...now, spec: withProfile(now.spec, profile), text: textBeside(now.text, (path) => isSetBy(profile, path)) });
   };
   const save = () => {
     const now = draft.peek();
@@ -35,6 +38,7 @@ export function ProfileRow() {
       <details class="more">
         <summary>{t("edit.profile.keep")}</summary>
         <p class="muted">{t("edit.profile.what")}</p>
+        {!areStored.value && <NotStored />}
         <div class="area-row">
           <input
             aria-label={t("edit.profile.name")}

@@ -1,7 +1,6 @@
 // A tag's pulses: of all tags of a list alike, since one list is of one kind of tag. The periods of several are in the list.
 import { type MessageKey, t } from "../i18n";
 import type { RequestFailed } from "../sources/problem";
-import type { EmitterSpec } from "../wire";
 import { change, draft } from "./draft";
 import { EMITTER, firstEmitter } from "./emitter";
 import { Message } from "./FormField";
@@ -13,14 +12,9 @@ type Name = "pulse_period_s" | "pulse_width_s" | "pulse_jitter_s";
 function PulseNumber({ name, label, failed }: { name: Name; label: MessageKey; failed: RequestFailed | null }) {
   const path = `${EMITTER}.${name}`;
   const id = `field-${path.replaceAll(".", "-")}`;
-  const { input, isWrong } = useTyped(path, shownValue(firstEmitter(draft.value!.spec)[name], 1), typedNumber, (value) => {
-    const now = draft.peek();
-    if (now)
-      change(
-        "emitters",
-        now.spec.emitters.map((emitter): EmitterSpec => ({ ...emitter, [name]: value })),
-      );
-  });
+  const { input, isWrong } = useTyped(path, shownValue(firstEmitter(draft.value!.spec)[name], 1), typedNumber, (value) =>
+    change(`emitters.all.${name}`, value),
+  );
   const message = isWrong ? t("edit.notNumber") : (failed?.fieldMessage(path) ?? null);
   return (
     <div class="field">

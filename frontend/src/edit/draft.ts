@@ -1,5 +1,6 @@
 // What is being typed: kept in the browser until the server has taken it, so that nothing is lost.
 import { signal } from "@preact/signals";
+import { keep } from "../state/kept";
 import type { MissionSpec } from "../wire";
 import { set } from "./path";
 
@@ -36,9 +37,12 @@ export function storedDraft(key: string): Draft | null {
   }
 }
 
+/** False: the draft as it is now lives as long as the page, and an older one may be stored. */
+export const isStored = signal(true);
+
 export function update(next: Draft): void {
   draft.value = next;
-  localStorage.setItem(storageKey(next.key), JSON.stringify(next));
+  isStored.value = keep(storageKey(next.key), next);
 }
 
 export function forget(key: string): void {
@@ -47,18 +51,23 @@ export function forget(key: string): void {
 
 /** Once the server has it; what was begun meanwhile in its place stays. */
 export function forgetSent(key: string, spec: MissionSpec): void {
-  if (JSON.stringify(storedDraft(key)?.spec) === JSON.stringify(spec)) forget(key);
+  if (!isStored.peek() || JSON.stringify(storedDraft(key)?.spec) === JSON.stringify(spec)) forget(key);
 }
 
+/** Raw text without that of fields whose value is another one now. */
+export const textBeside = (text: Draft["text"], isReplaced: (path: string) => boolean): Draft["text"] =>
+  Object.fromEntries(Object.entries(text).filter(([path]) => !isReplaced(path)));
+
+/** Raw text below the path was of what has been replaced. */
 export function change(path: string, value: unknown): void {
   const now = draft.peek();
-  if (now) update({ ...now, spec: set(now.spec, path, value) });
+  if (now) update({ ...now, spec: set(now.spec, path, value), text: textBeside(now.text, (at) => at.startsWith(`${path}.`)) });
 }
 
 /** Keeps what was typed; null: the text was understood and is forgotten. */
 export function type(path: string, text: string | null): void {
   const now = draft.peek();
   if (!now) return;
-  const { [path]: _old, ...others } = now.text;
+  const others = textBeside(now.text, (at) => at === path);
   update({ ...now, text: text === null ? others : { ...others, [path]: text } });
 }

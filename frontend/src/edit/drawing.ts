@@ -1,9 +1,11 @@
 // What the pointer draws on the map now: search area, fence or no-fly area, as polygon or rectangle, or corners moved.
 import { signal } from "@preact/signals";
+import { t } from "../i18n";
 import * as api from "../sources/api";
+import { localProblem, RequestFailed } from "../sources/problem";
 import { areaOf, polygonsOf, type Rings } from "../state/areas";
 import type { Area } from "../wire";
-import { type Draft, draft, update } from "./draft";
+import { type Draft, draft, forget, update } from "./draft";
 import { set } from "./path";
 
 export type What = "area" | "fence" | "noFly";
@@ -20,37 +22,46 @@ const keepOff = (now: Draft, zones: Area[]): void => update({ ...now, spec: set(
 export const replaces = signal(false);
 
 /** Parts that overlap become one: their ground is searched, and counted, once. The server knows how. */
-async function unite(): Promise<boolean> {
+async function unite(): Promise<void> {
   const before = draft.peek();
-  if (!before || polygonsOf(before.spec.area).length < 2) return true;
+  if (!before || polygonsOf(before.spec.area).length < 2) return;
   const united = await api.importArea(JSON.stringify(before.spec.area), "drawn.geojson").catch(() => null);
   const now = draft.peek();
   if (united && now?.spec.area === before.spec.area) update({ ...now, spec: { ...now.spec, area: united.area } });
-  return true;
 }
 
-/** Files that are being read and parts that become one. false: a file could not be read. */
-const settling = new Set<Promise<boolean>>();
+/** A file that is being read, or parts that become one. */
+interface Work {
+  /** Of its draft; undefined: of the one that comes. */
+  key: string | undefined;
+  done: Promise<unknown>;
+}
 
-function settle(work: Promise<boolean>): void {
+const settling = new Set<Work>();
+
+function settle(done: Promise<unknown>, key = draft.peek()?.key): Work {
+  const work = { key, done };
+  const end = () => settling.delete(work);
   settling.add(work);
-  void work.finally(() => settling.delete(work));
+  done.then(end, end);
+  return work;
 }
 
-/** Puts what is being read into the draft that is there now, unless another one is there by then. Fails as the reading. */
+/** Puts what is being read into the draft that is there now, unless that is left or discarded by then. Fails as the reading. */
 export function addRead<T>(reading: Promise<T>, put: (found: T) => void): Promise<T> {
-  const key = draft.peek()?.key;
   const added = reading.then((found) => {
-    if (key === undefined || draft.peek()?.key === key) put(found);
+    if (settling.has(work) && (work.key === undefined || draft.peek()?.key === work.key)) put(found);
     return found;
   });
-  settle(
-    added.then(
-      () => true,
-      () => false,
-    ),
-  );
+  const work = settle(added);
   return added;
+}
+
+/** Nothing that is still being read comes into the draft that takes its place. */
+export function discard(key: string): void {
+  for (const work of settling) if (work.key === key) settling.delete(work);
+  forget(key);
+  draft.value = null;
 }
 
 /** What is put in or taken out while corners are moved would be undone by the next one that moves. */
@@ -58,11 +69,19 @@ function endMoving(): void {
   if (tool.peek() === "corners") tool.value = "none";
 }
 
-/** The draft, once corners are no longer moved, files are read and parts that overlap have become one. null: a file could
- * not be read, or the page was left. */
+/** The draft, once corners are no longer moved, files are read and parts that overlap have become one. Fails as a reading,
+ * and while something is being drawn. null: the page was left. */
 export async function settledDraft(): Promise<Draft | null> {
   endMoving();
-  while (settling.size > 0) if ((await Promise.all(settling)).includes(false)) return null;
+  const key = draft.peek()?.key;
+  const isHere = () => draft.peek()?.key === key;
+  const own = () => [...settling].filter((work) => work.key === undefined || work.key === key).map(({ done }) => done);
+  while (isHere() && own().length > 0)
+    await Promise.all(own()).catch((error: unknown) => {
+      if (isHere()) throw error;
+    });
+  if (!isHere()) return null;
+  if (tool.peek() !== "none") throw new RequestFailed(localProblem(t("edit.area"), t("edit.area.drawing")));
   return draft.peek();
 }
 

@@ -5,6 +5,7 @@ import * as api from "../sources/api";
 import { RequestFailed } from "../sources/problem";
 import type { AreaOutlook, MissionSpec, Problem, SearchArea } from "../wire";
 import { draft } from "./draft";
+import { tool } from "./drawing";
 
 export interface OutlookState {
   search: SearchArea;
@@ -46,13 +47,15 @@ export async function askOutlook(missionId: string, spec: MissionSpec): Promise<
   }
 }
 
-/** What was said of an area holds for that area only, however often the same one is drawn or stored again. */
+/** What was said of an area holds for that area only, however often the same one is drawn or stored again, and until another
+ * is begun. */
 export function forgetOutlookOfOthers(): () => void {
   return effect(() => {
     const now = draft.value;
+    const isDrawing = tool.value !== "none";
     const asked = outlook.peek();
     if (!asked) return;
     const isSame = now !== null && JSON.stringify(searchOf(now.spec)) === JSON.stringify(asked.search);
-    if (!isSame || Object.keys(now.text).length > 0) clearOutlook();
+    if (!isSame || isDrawing || Object.keys(now.text).length > 0) clearOutlook();
   });
 }

@@ -3,7 +3,7 @@ import { effect, signal } from "@preact/signals";
 import { asProblem } from "../commands/send";
 import * as api from "../sources/api";
 import type { MissionSpec, PlanChosen, Preview, Problem } from "../wire";
-import { draft } from "./draft";
+import { type Draft, draft } from "./draft";
 
 export interface PreviewState {
   running: boolean;
@@ -31,13 +31,16 @@ export function clearPreview(): void {
   preview.value = null;
 }
 
-export async function askPreview(spec: MissionSpec): Promise<void> {
+/** null: it was left before it could be asked of. */
+export async function askPreview(settling: Promise<Draft | null>): Promise<void> {
   asking?.abort();
   asking = new AbortController();
-  asked = unnamed(spec);
   const { signal: aborted } = asking;
-  preview.value = { running: true, found: null, problem: null };
   try {
+    const spec = (await settling)?.spec;
+    if (!spec || aborted.aborted) return;
+    asked = unnamed(spec);
+    preview.value = { running: true, found: null, problem: null };
     const found = await api.preview(spec, aborted);
     if (!aborted.aborted) preview.value = { running: false, found, problem: null };
   } catch (error) {

@@ -1,8 +1,10 @@
 // @vitest-environment happy-dom
 import { expect, it } from "vitest";
 import { someSpec } from "../wire/examples";
+import { textBeside } from "./draft";
 import { set } from "./path";
 import {
+  isSetBy,
   learned,
   learnInto,
   profileOf,
@@ -11,7 +13,6 @@ import {
   removeProfile,
   saveProfile,
   takeBack,
-  textBeside,
   withProfile,
 } from "./profiles";
 
@@ -49,7 +50,7 @@ it("keeps what another tab saved meanwhile", () => {
 it("takes the place of what was typed in its own fields only", () => {
   const left = { emitters: "15o.3 typo", "flight.fence_margin_m": "wide" };
   const set = { "flight.speed_m_s": "fast", "sensor.sigma_deg": "x", "planner.motion.turn_rate_deg_s": "?" };
-  expect(textBeside({ ...left, ...set }, profileOf(someSpec(), "quad"))).toEqual(left);
+  expect(textBeside({ ...left, ...set }, (path) => isSetBy(profileOf(someSpec(), "quad"), path))).toEqual(left);
 });
 
 it("bears a storage that holds something else", () => {

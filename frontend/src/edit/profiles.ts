@@ -1,6 +1,7 @@
 // Vehicles and sensors one flies again and again: the values that belong to the equipment, kept under a name.
 import { signal } from "@preact/signals";
 import type { Suggested } from "../sources/libraryApi";
+import { keep } from "../state/kept";
 import type { MissionSpec } from "../wire";
 import { get } from "./path";
 
@@ -50,14 +51,23 @@ export function readProfiles(stored: string | null): Profile[] {
   }
 }
 
+/** False: they live as long as the page. */
+export const areStored = signal(true);
+export const profiles = signal<readonly Profile[]>([]);
+
 /** Another tab may have saved one meanwhile. */
-const stored = () => readProfiles(localStorage.getItem(KEY));
+const stored = () => (areStored.peek() ? readProfiles(localStorage.getItem(KEY)) : profiles.peek());
 
-export const profiles = signal<readonly Profile[]>(stored());
+export function readAgain(): void {
+  profiles.value = stored();
+}
 
-function keep(next: readonly Profile[]): void {
+readAgain();
+addEventListener("storage", readAgain);
+
+function store(next: readonly Profile[]): void {
   profiles.value = next;
-  localStorage.setItem(KEY, JSON.stringify(next));
+  areStored.value = keep(KEY, next);
 }
 
 export function profileOf(spec: MissionSpec, name: string): Profile {
@@ -77,11 +87,9 @@ export const withProfile = (spec: MissionSpec, { sensor, motion, flight }: Profi
   flight: { ...spec.flight, ...flight },
 });
 
-/** Raw text of the fields that a profile leaves alone. */
-export const textBeside = (text: Record<string, string>, profile: Profile): Record<string, string> =>
-  Object.fromEntries(
-    Object.entries(text).filter(([path]) => !/^(sensor|planner\.motion)\./.test(path) && get(profile, path) === undefined),
-  );
+/** Does the profile set the field at the path? */
+export const isSetBy = (profile: Profile, path: string): boolean =>
+  /^(sensor|planner\.motion)\./.test(path) || get(profile, path) !== undefined;
 
 /** With what checked flights suggest. Pure: the profile after it, its values of before kept in its history. The offset is
  * the whole of it, so that taking it over twice is taking it over once. */
@@ -112,9 +120,9 @@ export function takeBack(name: string): void {
 export function saveProfile(saved: Profile): void {
   const known = stored();
   const profile = { ...saved, history: saved.history ?? known.find((p) => p.name === saved.name)?.history ?? [] };
-  keep([...known.filter((p) => p.name !== profile.name), profile].toSorted((a, b) => a.name.localeCompare(b.name)));
+  store([...known.filter((p) => p.name !== profile.name), profile].toSorted((a, b) => a.name.localeCompare(b.name)));
 }
 
 export function removeProfile(name: string): void {
-  keep(stored().filter((p) => p.name !== name));
+  store(stored().filter((p) => p.name !== name));
 }

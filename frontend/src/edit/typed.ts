@@ -4,8 +4,10 @@ import { draft, shownFields, type } from "./draft";
 
 /** parse: null where the words cannot be read. */
 export function useTyped<T>(path: string, shown: string, parse: (words: string) => T | null, take: (value: T) => void) {
-  const [words, setWords] = useState<string | null>(null);
+  const [typed, setWords] = useState<string | null>(null);
   const kept = draft.value!.text[path];
+  const isReplaced = typed !== null && kept === undefined && parse(typed) === null; // by a preset, say
+  const words = isReplaced ? null : typed;
   useEffect(() => {
     shownFields.add(path);
     return () => {
@@ -20,8 +22,8 @@ export function useTyped<T>(path: string, shown: string, parse: (words: string) 
         const typed = e.currentTarget.value;
         const value = parse(typed);
         setWords(typed);
-        type(path, value === null ? typed : null);
         if (value !== null) take(value);
+        type(path, value === null ? typed : null);
       },
       onBlur: () => setWords(null),
       onKeyDown: ({ key }: { key: string }) => key === "Enter" && setWords(null),

@@ -684,6 +684,7 @@ export const de: Record<MessageKey, string> = {
   "edit.restored": "Was Sie zuvor eingegeben haben, ist noch da.",
   "edit.discard": "Von vorn",
   "edit.invalid": "Bitte berichtigen, was unten markiert ist.",
+  "edit.notStored": "Der Speicher dieses Browsers ist voll: Was hier steht, geht beim Verlassen der Seite verloren.",
   "edit.section.name": "Was gesucht wird",
   "edit.section.area": "Wo er sein kann",
   "edit.section.flight": "Wie geflogen wird",

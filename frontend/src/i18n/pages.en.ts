@@ -262,6 +262,7 @@ export const pagesEn = {
   "edit.restored": "What you typed before is still here.",
   "edit.discard": "Start over",
   "edit.invalid": "Please correct what is marked below.",
+  "edit.notStored": "This browser's storage is full: what is entered here is lost when you leave.",
   "edit.section.name": "What is looked for",
   "edit.section.area": "Where it may be",
   "edit.section.flight": "How to fly",

@@ -4,8 +4,8 @@ import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
-import { draft, forget, isUnread, storedDraft, update } from "../edit/draft";
-import { replaces, settledDraft, tool } from "../edit/drawing";
+import { draft, isUnread, storedDraft, update } from "../edit/draft";
+import { discard, replaces, settledDraft, tool } from "../edit/drawing";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
@@ -18,8 +18,9 @@ import { EditMapArea } from "./EditMapArea";
 
 type AreaRoute = Extract<Route, { page: "area" }>;
 
-export function AreaPage({ route }: { route: AreaRoute }) {
-  const id = route.missionId;
+export const AreaPage = ({ route: { missionId: id } }: { route: AreaRoute }) => <Changed id={id} key={id} />;
+
+function Changed({ id }: { id: string }) {
   const key = `area:${id}`;
   const [problem, setProblem] = useState<Problem | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
@@ -49,8 +50,15 @@ export function AreaPage({ route }: { route: AreaRoute }) {
   }, [key]);
 
   const leave = () => {
-    forget(key);
+    discard(key);
     go(missionAddress(id));
+  };
+  const ask = () => {
+    setProblem(null);
+    settledDraft().then(
+      (settled) => settled && askOutlook(id, settled.spec),
+      (error: unknown) => setProblem(asProblem(error)),
+    );
   };
   const judged = outlook.value;
   const isAsking = judged !== null && !judged.found && !judged.problem;
@@ -66,9 +74,9 @@ export function AreaPage({ route }: { route: AreaRoute }) {
         <div class="edit-scroll">
           <p class="panel">{t("area.what")}</p>
           {draft.value?.key === key && <AreaSection failed={judged?.failed ?? null} told={told} onTold={setTold} />}
-          {problem && <ProblemBox problem={problem} />}
         </div>
         <div class="panel edit-foot">
+          {problem && <ProblemBox problem={problem} testId="area-problem" />}
           {judged && <OutlookCard judged={judged} />}
           {!held && (
             <p role="status" data-testid="area-not-held">
@@ -92,13 +100,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
                 {t("area.keep")}
               </button>
               {!judged?.found && (
-                <button
-                  type="button"
-                  class="primary"
-                  data-testid="outlook-ask"
-                  disabled={isAsking || !isReadable}
-                  onClick={() => void settledDraft().then((settled) => (settled?.key === key ? askOutlook(id, settled.spec) : undefined))}
-                >
+                <button type="button" class="primary" data-testid="outlook-ask" disabled={isAsking || !isReadable} onClick={ask}>
                   {t(isAsking ? "area.asking" : "area.ask")}
                 </button>
               )}

@@ -1,22 +1,22 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
-import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { asFailure } from "../commands/send";
 import { suggestedSpec } from "../commands/suggested";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
-import { draft, forget, forgetSent, isUnread, storedDraft, update } from "../edit/draft";
-import { settledDraft, tool } from "../edit/drawing";
+import { change, draft, forgetSent, isStored, isUnread, storedDraft, textBeside, update } from "../edit/draft";
+import { discard, settledDraft, tool } from "../edit/drawing";
 import { EmitterListField } from "../edit/EmitterListField";
 import { EMITTER, firstEmitter } from "../edit/emitter";
 import { FormField, TextField } from "../edit/FormField";
 import { type NumberField, sections } from "../edit/fields";
 import { KindField } from "../edit/KindField";
 import { MovementField } from "../edit/MovementField";
+import { NotStored } from "../edit/NotStored";
 import { PreviewCard } from "../edit/PreviewCard";
 import { ProfileRow } from "../edit/ProfileRow";
-import { type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
+import { isOfPreset, type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
 import { clearPreview, forgetPreviewOfOthers } from "../edit/preview";
 import { ReceiverBandField } from "../edit/ReceiverBandField";
 import { RhythmFields } from "../edit/RhythmFields";
@@ -56,7 +56,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
           onChange={(e) => {
             const now = draft.peek();
             const name = e.currentTarget.value as PresetName | "";
-            if (now && name) update({ ...now, spec: withPreset(now.spec, name) });
+            if (now && name) update({ ...now, spec: withPreset(now.spec, name), text: textBeside(now.text, isOfPreset) });
           }}
         >
           <option value="">–</option>
@@ -97,15 +97,14 @@ function EquipmentSection() {
 function Motion({ failed }: { failed: RequestFailed | null }) {
   const { motion } = draft.value!.spec.planner;
   const choose = (kind: string) => {
-    const now = draft.peek()!;
-    const speed = now.spec.flight.speed_m_s;
+    const speed = draft.peek()!.spec.flight.speed_m_s;
     const fresh =
       kind === "linear"
         ? { kind, speed_m_s: speed }
         : kind === "full"
           ? { kind, turn_rate_deg_s: 30, acceleration_m_s2: 1, speed_m_s: 8, constant_s: 3 }
           : { kind: "linear_constant", speed_m_s: speed, constant_s: 11.2 };
-    update({ ...now, spec: { ...now.spec, planner: { ...now.spec.planner, motion: fresh as typeof motion } } });
+    change("planner.motion", fresh);
   };
   return (
     <>
@@ -140,18 +139,9 @@ function Motion({ failed }: { failed: RequestFailed | null }) {
   );
 }
 
-/** Opens where something is wrong, and stays as it is when that has been mended. */
-function More({ isOpen, children }: { isOpen: boolean; children: ComponentChildren }) {
-  const box = useRef<HTMLDetailsElement>(null);
-  useEffect(() => {
-    if (isOpen && box.current) box.current.open = true;
-  }, [isOpen]);
-  return (
-    <details class="more" ref={box}>
-      <summary>{t("edit.more")}</summary>
-      {children}
-    </details>
-  );
+/** What hides a field that is marked is opened; it stays open when that has been mended. */
+function openMarked(): void {
+  for (const mark of document.querySelectorAll("details .field-message")) mark.closest("details")!.open = true;
 }
 
 function Sections({ failed }: { failed: RequestFailed | null }) {
@@ -160,7 +150,6 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
       {sections.map((section) => {
         const asked = section.fields.filter(({ when }) => when?.(draft.value!.spec) ?? true);
         const more = asked.filter((f) => f.more);
-        const isOpen = more.some((f) => draft.value!.text[f.path] !== undefined || failed?.fieldMessage(f.path) != null);
         return (
           <fieldset class="panel" key={section.title}>
             <legend>{t(section.title)}</legend>
@@ -170,12 +159,13 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
                 <FormField field={field} failed={failed} key={field.path} />
               ))}
             {more.length > 0 && (
-              <More isOpen={isOpen}>
+              <details class="more">
+                <summary>{t("edit.more")}</summary>
                 {more.map((field) => (
                   <FormField field={field} failed={failed} key={field.path} />
                 ))}
                 {section.title === "edit.section.planner" && <Motion failed={failed} />}
-              </More>
+              </details>
             )}
           </fieldset>
         );
@@ -184,55 +174,60 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
   );
 }
 
+/** Another draft is another form: what was wrong with one says nothing of the next. */
 export function EditPage({ route }: { route: EditRoute }) {
+  const [discards, setDiscards] = useState(0);
   const key = keyOf(route);
-  const from = route.page === "new" ? route.from : null;
+  const onDiscard = () => {
+    discard(key);
+    setDiscards(discards + 1);
+  };
+  return <Editor route={route} draftKey={key} onDiscard={onDiscard} key={`${key} ${discards}`} />;
+}
+
+function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKey: string; onDiscard: () => void }) {
   const [failed, setFailed] = useState<RequestFailed | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
   const [saving, setSaving] = useState(false);
   const [restored, setRestored] = useState(false);
-  const loads = useRef(0);
+  const isLeft = useRef(false);
 
-  const load = () => {
-    setFailed(null);
-    draft.value = null; // what is typed until it has come would be lost
-    const mine = ++loads.current;
-    specFor(route).then(
-      ({ spec, suggested }) => {
-        if (mine === loads.current) draft.value = { key, spec, hasArea: true, suggested, text: {} }; // kept from the first change on
-      },
-      (error: unknown) => mine === loads.current && setFailed(asFailure(error)),
-    );
-  };
   useEffect(() => {
     clearPreview();
     const kept = storedDraft(key);
     setRestored(kept !== null);
     if (kept) update(kept);
-    else load();
+    else {
+      draft.value = null; // what is typed until it has come would be lost
+      specFor(route).then(
+        ({ spec, suggested }) => {
+          if (!isLeft.current) draft.value = { key, spec, hasArea: true, suggested, text: {} }; // kept from the first change on
+        },
+        (error: unknown) => setFailed(asFailure(error)),
+      );
+    }
     const stops = [watchCoverage(), forgetPreviewOfOthers()];
     return () => {
-      loads.current += 1;
+      isLeft.current = true;
       tool.value = "none"; // corners that were moved are kept
       draft.value = null; // the next page would show it until its own has come
       clearPreview();
       for (const stop of stops) stop();
     };
-  }, [key, from]);
+  }, []);
 
   const save = async () => {
-    const here = loads.current;
+    (document.activeElement as HTMLElement | null)?.blur(); // what is typed there is taken, or marked
     setFailed(null);
     setSaving(true);
     try {
       const now = await settledDraft();
-      if (!now || here !== loads.current) return;
-      const local =
-        tool.peek() !== "none" ? t("edit.area.drawing") : !now.hasArea ? t("edit.noArea") : isUnread(now) ? t("edit.invalid") : null;
+      if (!now || isLeft.current) return;
+      const local = !now.hasArea ? t("edit.noArea") : isUnread(now) ? t("edit.invalid") : null;
       if (local) throw new RequestFailed(localProblem(t("menu.new"), local));
       const saved = route.page === "edit" ? await api.editMission(route.missionId, now.spec) : await api.draftMission(now.spec);
       forgetSent(key, now.spec);
-      if (here === loads.current) go(missionAddress(saved.mission_id));
+      if (!isLeft.current) go(missionAddress(saved.mission_id));
     } catch (error) {
       setFailed(asFailure(error));
     } finally {
@@ -241,6 +236,7 @@ export function EditPage({ route }: { route: EditRoute }) {
   };
 
   const now = draft.value?.key === key ? draft.value : null;
+  useEffect(openMarked, [failed, !now]);
   return (
     <div class="edit" data-testid="edit-page" inert={saving}>
       <EditMapArea onTold={setTold} />
@@ -256,16 +252,7 @@ export function EditPage({ route }: { route: EditRoute }) {
           {restored && (
             <span class="muted">
               {t("edit.restored")}{" "}
-              <button
-                type="button"
-                data-testid="discard"
-                onClick={() => {
-                  tool.value = "none";
-                  forget(key);
-                  setRestored(false);
-                  load();
-                }}
-              >
+              <button type="button" data-testid="discard" onClick={onDiscard}>
                 {t("edit.discard")}
               </button>
             </span>
@@ -283,6 +270,7 @@ export function EditPage({ route }: { route: EditRoute }) {
           )}
         </div>
         <div class="panel edit-foot">
+          {now && !isStored.value && <NotStored />}
           {failed && <ProblemBox problem={failed.problem} testId="edit-problem" />}
           <div class="start-row">
             <a class="button" href={route.page === "edit" ? missionAddress(route.missionId) : "#/"}>
