@@ -4,6 +4,7 @@ import { act } from "preact/test-utils";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { live, source } from "../state/connection";
 import { missionAt } from "../state/mission";
+import { locale } from "../units/locale";
 import type { MissionEvent } from "../wire";
 import { record, someBelief, somePlan, someSpec, started } from "../wire/examples";
 import { EmitterList } from "./EmitterList";
@@ -101,4 +102,36 @@ it("takes no orders for a recording", () => {
   show();
   expect(part("order")).toBeNull();
   expect(part("place-b")?.textContent).toBe("first");
+});
+
+it("goes on from another's order that came after its own, however both were told", async () => {
+  show();
+  press("order");
+  press("first-a");
+  await act(() => Promise.resolve());
+  show(
+    { kind: "priorities_changed", priorities: { a: 1, b: 2 }, by: "o" },
+    { kind: "priorities_changed", priorities: { c: 1, b: 2 }, by: "o" },
+  );
+  expect(part("place-c")?.textContent).toBe("first");
+  press("first-b");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { b: 1, c: 2 } });
+});
+
+it("goes on from its second step while the first is told", async () => {
+  show();
+  press("order");
+  press("sooner-c");
+  press("sooner-c");
+  await act(() => Promise.resolve());
+  show({ kind: "priorities_changed", priorities: { b: 1, c: 2 }, by: "o" });
+  press("sooner-c");
+  expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { c: 1, b: 2 } });
+});
+
+it("writes numbers as the page's language does", () => {
+  locale.value = "de";
+  show();
+  expect(part("emitter-a")?.textContent).toContain("150,1 MHz, every 1,3 s");
+  locale.value = "en";
 });

@@ -1,6 +1,6 @@
 // All emitters of a search that has several: number and colour as on the map, how far each one is, and their order of importance.
 import { signal } from "@preact/signals";
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { send } from "../commands/send";
 import { t } from "../i18n";
 import { source } from "../state/connection";
@@ -8,11 +8,12 @@ import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
 import { emitterName } from "../state/emitterName";
 import { groupsOf, inOrder, type Priorities } from "../state/importance";
-import { cursor, emittersThen } from "../state/moment";
+import { cursor, emittersThen, events } from "../state/moment";
 import { selectedEmitter } from "../state/selection";
 import { settings } from "../state/settings";
 import { mission, shownTimeMs } from "../state/shown";
 import { remainingTimes } from "../state/timeLeft";
+import { formatExact } from "../units/exact";
 import { formatDuration, formatLength } from "../units/quantities";
 import type { EmitterSpec } from "../wire";
 import { OrderButtons } from "./OrderButtons";
@@ -32,24 +33,35 @@ function stateWords(emitter: EmitterState | undefined): string {
 /** Its frequency, and its period where that alone tells it from another tag. */
 function signalWords(emitters: readonly EmitterSpec[], index: number): string {
   const { frequency_hz, pulse_period_s } = emitters[index]!;
-  const mhz = Number((frequency_hz / 1e6).toFixed(4));
+  const mhz = formatExact(frequency_hz / 1e6);
   const isShared = emitters.some((other, i) => i !== index && other.frequency_hz === frequency_hz);
-  return isShared ? t("emitters.mhzEvery", { mhz, period: String(pulse_period_s) }) : t("emitters.mhz", { mhz });
+  return isShared ? t("emitters.mhzEvery", { mhz, period: formatExact(pulse_period_s) }) : t("emitters.mhz", { mhz });
+}
+
+/** after: the last event when it was sent. */
+interface Sent {
+  priorities: Priorities;
+  after: number;
+}
+
+function isTold(told: readonly EmitterSpec[], { priorities, after }: Sent): boolean {
+  const groups = (of: Priorities) => JSON.stringify(groupsOf(inOrder(told, of)));
+  return events.value.some(
+    ({ seq, event }) => seq > after && event.kind === "priorities_changed" && groups(event.priorities) === groups(priorities),
+  );
 }
 
 export function EmitterList() {
   const { spec, emitterId, missionId, plan, startedAt, ended } = mission.value;
   const told = spec?.emitters ?? [];
-  const [sent, setSent] = useState<Priorities | null>(null);
-  const emitters = sent ? inOrder(told, sent) : told; // the next press goes on from what was sent
-  const isTold = JSON.stringify(groupsOf(emitters)) === JSON.stringify(groupsOf(told));
-  useEffect(() => {
-    if (isTold || !ordering.value) setSent(null);
-  }, [isTold, ordering.value, sent]);
+  const [sent, setSent] = useState<Sent | null>(null);
+  // the next press goes on from what was sent, until that is told: what is told after it is another's order
+  const emitters = sent && !isTold(told, sent) ? inOrder(told, sent.priorities) : told;
   const order = async (id: string, priorities: Priorities) => {
-    setSent(priorities);
+    const now = { priorities, after: events.peek().at(-1)?.seq ?? 0 };
+    setSent(now);
     const accepted = await send("order", id, { kind: "set_priorities", priorities });
-    if (!accepted) setSent((last) => (last === priorities ? null : last));
+    if (!accepted) setSent((last) => (last === now ? null : last));
   };
   if (emitters.length < 2) return null;
   const states = emittersThen.value;

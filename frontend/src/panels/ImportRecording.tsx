@@ -10,6 +10,7 @@ import { emitterName } from "../state/emitterName";
 import { inFlight } from "../state/mission";
 import { liveMission } from "../state/moment";
 import { mission } from "../state/shown";
+import { formatExact } from "../units/exact";
 import { parsePlace } from "../units/parsePlace";
 import { formatBearing, formatNumber } from "../units/quantities";
 import type { Problem, RecordingImport } from "../wire";
@@ -113,7 +114,7 @@ function WhichEmitter() {
       <select name="emitter_id" data-testid="recording-emitter" key={emitterId}>
         {[...shown, ...others].map(({ emitter_id: id, frequency_hz }) => (
           <option value={id} key={id}>
-            {emitterName(emitters, id)} {t("emitters.mhz", { mhz: Number((frequency_hz / 1e6).toFixed(4)) })}
+            {emitterName(emitters, id)} {t("emitters.mhz", { mhz: formatExact(frequency_hz / 1e6) })}
           </option>
         ))}
       </select>
