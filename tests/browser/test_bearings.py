@@ -109,6 +109,21 @@ def test_a_search_without_a_craft_is_advised_until_it_is_localized(server: Serve
     expect(page.get_by_test_id("advice-done")).to_be_visible()
 
 
+def test_a_double_tap_takes_one_bearing_back(server: Server, open_screen: OpenScreen) -> None:
+    page = open_screen(server, f"#/mission/{server.draft()}/bearings", **PHONE).page
+    page.get_by_test_id("report-name").type("Ada")
+    for count, stand in enumerate((LEFT, RIGHT), 1):
+        hear(page, stand, TOP)
+        expect(page.locator("[data-testid=report-sent] [data-stage=sent]")).to_have_count(count)
+    page.get_by_test_id("report-back").tap()
+    page.wait_for_timeout(130)
+    page.get_by_test_id("report-back").tap()
+    page.wait_for_timeout(1000)
+    assert stages(page) == ["back", "sent"]
+    page.get_by_test_id("report-back").tap()
+    expect(page.locator("[data-testid=report-sent] [data-stage=back]")).to_have_count(2)
+
+
 def test_health_says_what_was_refused_of_what_came_by_udp(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, open_screen: OpenScreen
 ) -> None:

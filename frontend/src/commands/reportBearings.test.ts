@@ -2,7 +2,7 @@
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { pending, type Queued, read, type Stage } from "../state/bearingQueue";
 import { session } from "../state/session";
-import { countAgain, keepSending, queue, report, sendWaiting, unreached } from "./reportBearings";
+import { backspace, countAgain, keepSending, queue, report, sendWaiting, unreached } from "./reportBearings";
 
 const KEY = "crossfix.bearings";
 const BEARING = { by: "Ada", emitter_id: null, place: { lat: 50.6, lon: 7.2 }, bearing_deg: 12, sigma_deg: 12, snr_db: null };
@@ -132,4 +132,14 @@ it.each([
   queue.value = [of("a", "withdrawing")];
   await sendWaiting();
   expect(queue.value[0]).toMatchObject({ stage, problem });
+});
+
+it("takes back one bearing at a thumb's double tap, and the next one at a tap of its own", () => {
+  queue.value = [of("a", "sent"), of("b", "sent"), of("c", "sent")];
+  const back = () => queue.value.filter((one) => one.stage !== "sent").map((one) => one.report.bearing_id);
+  backspace("m", 10_000);
+  backspace("m", 10_130);
+  expect(back()).toEqual(["c"]);
+  backspace("m", 10_900);
+  expect(back()).toEqual(["b", "c"]);
 });

@@ -11,6 +11,7 @@ const KEY = "crossfix.bearings";
 const AGAIN_MS = 4000;
 const TWICE_MS = 2000;
 const TWICE_DEG = 2;
+const TAP_MS = 600;
 
 type Told = Omit<BearingReport, "bearing_id" | "taken_at_utc">;
 
@@ -112,7 +113,12 @@ export function report(missionId: string, bearing: Told): void {
   void sendWaiting();
 }
 
-export function backspace(missionId: string): void {
+let backAt = Number.NEGATIVE_INFINITY;
+
+/** atMs: of the tap; a thumb's second one takes nothing more back. */
+export function backspace(missionId: string, atMs: number): void {
+  if (atMs - backAt < TAP_MS) return;
+  backAt = atMs;
   change((now) => takeBackLast(now, missionId, reporting.peek()));
   void sendWaiting();
 }

@@ -212,7 +212,7 @@ export const de: Record<MessageKey, string> = {
   "report.here": "Ich stehe",
   "report.hear": "Ich höre es",
   "report.gps": "Mein GPS",
-  "report.gpsOn": "GPS ±{metres} m",
+  "report.gpsOn": "GPS ±{length}",
   "report.gpsDenied": "Das Handy sagt nicht, wo es ist. Erlauben Sie es, oder tippen Sie auf die Karte.",
   "report.compass": "Kompass",
   "report.compass.none": "Dieses Gerät hat keinen Kompass, der Norden kennt. Auf die Karte tippen oder die Richtung eingeben.",

@@ -50,7 +50,7 @@ export const pagesEn = {
   "report.here": "I stand",
   "report.hear": "I hear it",
   "report.gps": "My GPS",
-  "report.gpsOn": "GPS ±{metres} m",
+  "report.gpsOn": "GPS ±{length}",
   "report.gpsDenied": "The phone does not tell where it is. Allow it, or tap on the map.",
   "report.compass": "Compass",
   "report.compass.none": "This device has no compass that says where north is. Tap on the map, or type the direction.",

@@ -18,9 +18,10 @@ import { emittersThen, look } from "../state/moment";
 import { compassState, magneticDeg, startCompass, stopCompass } from "../state/phoneCompass";
 import { missionAddress } from "../state/route";
 import { me } from "../state/session";
+import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { drawnWays } from "../state/ways";
-import { formatBearing } from "../units/quantities";
+import { formatBearing, formatLength } from "../units/quantities";
 import type { Problem } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { useGps } from "./useGps";
@@ -264,7 +265,9 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
             gps.start();
           }}
         >
-          {gps.state === "on" && gps.accuracy !== null ? t("report.gpsOn", { metres: Math.round(gps.accuracy) }) : t("report.gps")}
+          {gps.state === "on" && gps.accuracy !== null
+            ? t("report.gpsOn", { length: formatLength(Math.round(gps.accuracy), settings.value.units) })
+            : t("report.gps")}
         </button>
       </fieldset>
       {(gps.state === "denied" || gps.state === "silent") && <p role="alert">{t("report.gpsDenied")}</p>}
@@ -365,7 +368,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           type="button"
           data-testid="report-back"
           disabled={ended !== null || !lastOf(queue.value, missionId, reporting.value)}
-          onClick={() => backspace(missionId)}
+          onClick={(e) => backspace(missionId, e.timeStamp)}
         >
           ⌫ {t("report.back")}
         </button>
