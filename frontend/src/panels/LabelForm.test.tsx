@@ -2,7 +2,8 @@
 import { render } from "preact";
 import { act } from "preact/test-utils";
 import { beforeEach, expect, it, vi } from "vitest";
-import { label } from "../sources/libraryApi";
+import { problems } from "../commands/send";
+import { label, remove } from "../sources/libraryApi";
 import type { MissionSummary } from "../wire";
 import { LabelForm } from "./LabelForm";
 
@@ -24,7 +25,10 @@ function write(text: string): void {
   });
 }
 
-beforeEach(() => vi.clearAllMocks());
+beforeEach(() => {
+  vi.clearAllMocks();
+  problems.value = {};
+});
 
 it("keeps what was typed when another row's form was opened, until it is saved", async () => {
   open("one");
@@ -51,4 +55,36 @@ it("takes no further words while it saves, and again when that failed", async ()
   await vi.waitFor(() => expect(part("label-form").inert).toBe(false));
   expect(notes().value).toBe("fed at dusk");
   expect(done).not.toHaveBeenCalled();
+});
+
+it("closes no other row's form when it is saved, and says at the bar when it could not be", async () => {
+  open("four");
+  write("note");
+  vi.mocked(label).mockResolvedValue(undefined as never);
+  act(() => part("label-save").click());
+  open("five");
+  await act(() => Promise.resolve());
+  expect(done).not.toHaveBeenCalled();
+  vi.mocked(label).mockRejectedValue(new Error("no network"));
+  act(() => part("label-save").click());
+  open("four");
+  expect(notes().value).toBe("");
+  await vi.waitFor(() => expect(problems.value.bar?.title).toContain("five"));
+});
+
+it("forgets what was typed when that is wished, and with the mission", async () => {
+  for (const [id, button] of [
+    ["six", "label-discard"],
+    ["seven", "delete-mission"],
+  ] as const) {
+    open(id);
+    write("old words");
+    vi.mocked(remove).mockResolvedValue(undefined as never);
+    act(() => part(button).click());
+    await vi.waitFor(() => expect(done).toHaveBeenCalled());
+    done.mockClear();
+    open("eight");
+    open(id);
+    expect(notes().value).toBe("");
+  }
 });

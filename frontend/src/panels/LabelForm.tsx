@@ -1,10 +1,11 @@
 // Name, tags and notes of a mission in the list; deleting it, and bringing it back.
-import { useState } from "preact/hooks";
-import { asProblem } from "../commands/send";
-import { t } from "../i18n";
+import { useRef, useState } from "preact/hooks";
+import { asProblem, report } from "../commands/send";
+import { type MessageKey, t } from "../i18n";
 import { label, remove, restore } from "../sources/libraryApi";
+import { localProblem } from "../sources/problem";
 import type { MissionSummary, Problem } from "../wire";
-import { ProblemBox } from "./ProblemNote";
+import { ProblemBox, problemWords } from "./ProblemNote";
 
 /** What was typed and is not saved yet, by mission: the form closes when another row's is opened. */
 const unsaved = new Map<string, { name?: string; tags?: string; notes?: string }>();
@@ -20,13 +21,23 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
     unsaved.set(id, next);
     setTyped(next);
   };
-  const after = (done: Promise<unknown>) => {
+  const form = useRef<HTMLFormElement>(null);
+  const after = (what: MessageKey, done: Promise<unknown>) => {
     setSending(true); // what is typed meanwhile would not be sent
-    done.then(onDone, (error: unknown) => {
-      setProblem(asProblem(error));
-      setSending(false);
-    });
+    done.then(
+      () => {
+        if (unsaved.get(id) === typed) unsaved.delete(id);
+        if (form.current) onDone();
+      },
+      (error: unknown) => {
+        const failed = asProblem(error);
+        if (!form.current) report("bar", localProblem(`${t(what)}: ${name}`, problemWords(failed)));
+        setProblem(failed);
+        setSending(false);
+      },
+    );
   };
+  const ending = deleted ? "missions.restore" : "missions.delete";
   const labels = () => ({
     name,
     notes,
@@ -39,10 +50,11 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
     <form
       class="label-form"
       data-testid="label-form"
+      ref={form}
       inert={sending}
       onSubmit={(e) => {
         e.preventDefault();
-        after(label(id, labels()).then(() => unsaved.delete(id)));
+        after("missions.save", label(id, labels()));
       }}
     >
       <label>
@@ -62,9 +74,19 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
         <button
           type="button"
           data-testid={deleted ? "restore-mission" : "delete-mission"}
-          onClick={() => after(deleted ? restore(id) : remove(id))}
+          onClick={() => after(ending, deleted ? restore(id) : remove(id))}
         >
-          {t(deleted ? "missions.restore" : "missions.delete")}
+          {t(ending)}
+        </button>
+        <button
+          type="button"
+          data-testid="label-discard"
+          onClick={() => {
+            unsaved.delete(id);
+            onDone();
+          }}
+        >
+          {t("slide.cancel")}
         </button>
         <button type="submit" class="primary" data-testid="label-save" disabled={name.trim() === ""}>
           {t("missions.save")}
