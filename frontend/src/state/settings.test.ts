@@ -32,9 +32,11 @@ it("stays in its language when the words of another cannot be loaded, and says s
   expect(settings.value.language).toBe("en");
 });
 
-it("a change here leaves what another tab changed", () => {
-  localStorage.setItem("crossfix.settings", JSON.stringify({ ...settings.value, theme: "indoor" }));
-  dispatchEvent(new StorageEvent("storage", { key: "crossfix.settings" }));
+it("keeps what another tab chose meanwhile, and shows it", () => {
+  const theirs = JSON.stringify({ ...settings.value, theme: "indoor" });
+  localStorage.setItem("crossfix.settings", theirs);
+  dispatchEvent(new StorageEvent("storage", { key: "crossfix.settings", newValue: theirs }));
+  expect(settings.value.theme).toBe("indoor");
   change("units", "imperial");
-  expect(settings.value).toMatchObject({ theme: "indoor", units: "imperial" });
+  expect(readSettings(localStorage.getItem("crossfix.settings"))).toMatchObject({ theme: "indoor", units: "imperial" });
 });

@@ -48,18 +48,17 @@ export function readSettings(stored: string | null): Settings {
   return { ...read, theme: read.theme === "indoor" ? "indoor" : "outdoor" };
 }
 
-const stored = () => readSettings(localStorage.getItem(KEY));
-
-export const settings = signal<Settings>(stored());
-
-/** Another tab changed one: a change here would put back what it was before. */
-addEventListener("storage", ({ key }) => {
-  if (key === KEY) settings.value = stored();
-});
+export const settings = signal<Settings>(readSettings(localStorage.getItem(KEY)));
 
 export function change<K extends keyof Settings>(key: K, value: Settings[K]): void {
   settings.value = { ...settings.value, [key]: value };
+  keep(KEY, settings.value);
 }
+
+// chosen in another tab
+addEventListener("storage", ({ key, newValue }) => {
+  if (key === KEY) settings.value = readSettings(newValue);
+});
 
 /** onLanguageLost: its words could not be loaded; a language chosen before stays chosen. */
 export function applySettings(onLanguageLost: (wanted: Language) => void): void {
@@ -74,7 +73,6 @@ export function applySettings(onLanguageLost: (wanted: Language) => void): void 
     }
   };
   effect(() => {
-    keep(KEY, settings.value);
     document.documentElement.dataset.theme = settings.value.theme;
     document.documentElement.style.fontSize = `${settings.value.scale * 100}%`;
   });
