@@ -24,3 +24,22 @@ it("reads what was flown again after a gap, and once only before", async () => {
   await vi.advanceTimersByTimeAsync(1000);
   expect(path.value.map(([lon]) => lon)).toEqual([7.1, 7.15, 7.2]);
 });
+
+it("keeps what was heard while the track was under way, and asks again for one that was lost", async () => {
+  const source = new FakeSource();
+  const stored = { at_utc: "2026-05-01T10:00:00Z", lat: 50.7, lon: 7.1, heading_deg: 0 } as TrackFact;
+  const track = vi.spyOn(source, "track").mockRejectedValueOnce(new Error("no link"));
+  open(source);
+  source.tell(hello, { type: "event", recorded: record(started())[0]! }, someTelemetry({ craft_id: CRAFT, lat: 50.7, lon: 7.1 }));
+  await vi.advanceTimersByTimeAsync(1000);
+  expect(track).toHaveBeenCalledOnce();
+  let answer: (value: Awaited<ReturnType<typeof source.track>>) => void = () => undefined;
+  track.mockReturnValue(new Promise((resolve) => (answer = resolve)));
+  await vi.advanceTimersByTimeAsync(6000);
+  expect(track).toHaveBeenCalledTimes(2);
+  source.tell(someTelemetry({ craft_id: CRAFT, lat: 50.7, lon: 7.2 }));
+  await vi.advanceTimersByTimeAsync(1000);
+  answer({ mission_id: "m", craft_id: CRAFT, points: [stored] });
+  await vi.advanceTimersByTimeAsync(100);
+  expect(path.value.map(([lon]) => lon)).toEqual([7.1, 7.2]);
+});

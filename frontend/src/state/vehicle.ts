@@ -12,13 +12,17 @@ import { unseen, type VehicleView, withoutTremble } from "./vehicleView";
 export const track = signal<readonly TrackFact[]>([]);
 
 let loads = 0;
+const AGAIN_MS = 5000;
+const again = signal(0);
+const NO_PATH: readonly LonLat[] = [];
 
 async function loadTrack(from: Source, missionId: string, craftId: string): Promise<void> {
   const mine = ++loads;
-  const loaded = await from.track(missionId, craftId).catch(() => null);
+  const known = live.peek().paths.get(craftId)?.length;
+  const loaded = await from.track(missionId, craftId).catch(() => void setTimeout(() => again.value++, AGAIN_MS));
   if (!loaded || mine !== loads || source.peek() !== from || craftFlown.peek() !== craftId) return;
   const paths = new Map(live.peek().paths);
-  paths.delete(craftId);
+  paths.set(craftId, (paths.get(craftId) ?? NO_PATH).slice(known)); // what was heard meanwhile
   batch(() => {
     track.value = loaded.points;
     live.value = { ...live.peek(), paths };
@@ -36,7 +40,7 @@ const reviewing = computed(() => cursor.value !== null);
 /** Another one comes after each gap, in which nothing was heard of the flight. */
 const hello = computed(() => live.value.hello);
 effect(() => {
-  const [from, craftId] = [source.value, craftFlown.value, reviewing.value, hello.value];
+  const [from, craftId] = [source.value, craftFlown.value, reviewing.value, hello.value, again.value];
   if (from?.missionId && craftId !== null) void loadTrack(from, from.missionId, craftId);
 });
 
@@ -62,7 +66,6 @@ effect(() => {
   vehicle.value = reviewing.value ? seen.value : withoutTremble(vehicle.peek(), seen.value);
 });
 
-const NO_PATH: readonly LonLat[] = [];
 const livePath = computed(() => live.value.paths.get(craftShown.value ?? "") ?? NO_PATH);
 
 export const path = computed<readonly LonLat[]>(() => {
