@@ -1,14 +1,28 @@
 // Leaves something out of the belief, or counts it again.
+import { useEffect, useRef } from "preact/hooks";
 import { send } from "../commands/send";
 import { type MessageKey, t } from "../i18n";
+
+const TAP_MS = 600;
 
 /** of: the bearing, the sweep of a turn that heard nothing, or the leg. */
 export function CountButton({ id, of, leftOut, words }: { id: string; of: string; leftOut: boolean; words: MessageKey }) {
   const order = leftOut
     ? ({ kind: "include_bearing", bearing_id: of } as const)
     : ({ kind: "exclude_bearing", bearing_id: of, reason: "" } as const);
+  const asked = useRef(false);
+  const pressedAt = useRef(Number.NEGATIVE_INFINITY);
+  useEffect(() => {
+    asked.current = false;
+  }, [of, leftOut]);
+  const press = async ({ timeStamp }: Event) => {
+    if (asked.current || timeStamp - pressedAt.current < TAP_MS) return; // a thumb's second tap would be refused, or undo it
+    pressedAt.current = timeStamp;
+    asked.current = true;
+    if (!(await send("sweep", id, order))) asked.current = false;
+  };
   return (
-    <button type="button" class="small" data-testid={leftOut ? "include" : "exclude"} onClick={() => void send("sweep", id, order)}>
+    <button type="button" class="small" data-testid={leftOut ? "include" : "exclude"} onClick={press}>
       {t(words)}
     </button>
   );

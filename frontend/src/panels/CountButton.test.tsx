@@ -1,0 +1,43 @@
+// @vitest-environment happy-dom
+import { render } from "preact";
+import { act } from "preact/test-utils";
+import { beforeEach, expect, it, vi } from "vitest";
+import { send } from "../commands/send";
+import { CountButton } from "./CountButton";
+
+vi.mock("../commands/send", () => ({ send: vi.fn() }));
+
+const show = (leftOut: boolean) => act(() => render(<CountButton id="m" of="b" leftOut={leftOut} words="sweep.include" />, document.body));
+
+function tap(atMs: number): Promise<void> {
+  const click = new MouseEvent("click", { bubbles: true });
+  Object.defineProperty(click, "timeStamp", { value: atMs });
+  return act(async () => {
+    document.querySelector("button")!.dispatchEvent(click);
+  });
+}
+
+beforeEach(() => {
+  vi.mocked(send).mockReset();
+  act(() => render(null, document.body));
+});
+
+it("sends once until the server has told it, and does not undo it by a second tap", async () => {
+  vi.mocked(send).mockResolvedValue(true);
+  show(false);
+  await tap(1000);
+  await tap(4000);
+  show(true);
+  await tap(1400);
+  expect(send).toHaveBeenCalledOnce();
+  await tap(5000);
+  expect(vi.mocked(send).mock.lastCall![2].kind).toBe("include_bearing");
+});
+
+it("sends again what was refused", async () => {
+  vi.mocked(send).mockResolvedValue(false);
+  show(false);
+  await tap(1000);
+  await tap(2000);
+  expect(send).toHaveBeenCalledTimes(2);
+});
