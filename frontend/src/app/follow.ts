@@ -1,7 +1,8 @@
 // The address says which mission is shown, hence which source speaks: one place decides, whatever page comes or goes.
 import { effect } from "@preact/signals";
+import { replays } from "../sources/replay";
 import { live, source } from "../state/connection";
-import { followed, isGone } from "../state/gone";
+import { followed, isGone, noteGone } from "../state/gone";
 import { open } from "../state/open";
 import { route } from "../state/route";
 import { entered, refreshSession } from "../state/session";
@@ -17,7 +18,10 @@ export function followRoute(): () => void {
     const shown = followed(route.value);
     const wanted = isGone(shown) ? null : shown;
     const now = source.peek();
-    if (now === null || now.missionId !== wanted) open(sourceFor(wanted));
+    if (shown === wanted) noteGone(null);
+    if (now?.missionId === wanted) return;
+    if (now) replays.delete(now.missionId ?? ""); // the next time it is the server's
+    open(sourceFor(wanted));
   });
 }
 

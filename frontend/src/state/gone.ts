@@ -1,15 +1,16 @@
-// Missions that the server does not have: their address is wrong, or they were deleted for good.
+// The mission that was asked for and that the server does not have: its address is wrong, or it was deleted for good.
 import { signal } from "@preact/signals";
 import type { Route } from "./route";
 
-const gone = signal<ReadonlySet<string>>(new Set());
+const gone = signal<string | null>(null);
 
-export const noteGone = (missionId: string): void => {
-  gone.value = new Set([...gone.peek(), missionId]);
+/** null: another one is looked at; that one is asked for anew the next time. */
+export const noteGone = (missionId: string | null): void => {
+  gone.value = missionId;
 };
 
 /** The mission that a page shows as it goes; null: it shows none. */
 export const followed = (route: Route): string | null =>
   route.page === "mission" || route.page === "area" || route.page === "bearings" ? route.missionId : null;
 
-export const isGone = (missionId: string | null): boolean => missionId !== null && gone.value.has(missionId);
+export const isGone = (missionId: string | null): boolean => missionId !== null && missionId === gone.value;
