@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { proposal, propose } from "../commands/proposal";
 import { tapping, tell } from "../commands/truth";
 import { type MessageKey, reasonText, t } from "../i18n";
-import { bannerPx } from "../panels/AlertsButton";
+import { bannerPx } from "../panels/AlertBanner";
 import { Icon } from "../panels/Icon";
 import { advisedWay } from "../state/advice";
 import { shownBelief } from "../state/belief";

@@ -4,7 +4,7 @@ import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { proposal } from "../commands/proposal";
 import { t } from "../i18n";
-import { AlertBanner, bannerPx } from "../panels/AlertsButton";
+import { AlertBanner, bannerPx } from "../panels/AlertBanner";
 import { AntennaCheck } from "../panels/AntennaCheck";
 import { EstimatePanel } from "../panels/EstimatePanel";
 import { ImportRecording } from "../panels/ImportRecording";

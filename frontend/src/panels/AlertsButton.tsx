@@ -1,9 +1,8 @@
 // Warning, caution, advisory: how many are open, the list, acknowledgement, mute.
-import { computed, signal } from "@preact/signals";
-import { useLayoutEffect, useRef } from "preact/hooks";
+import { computed } from "@preact/signals";
 import { send } from "../commands/send";
 import { type MessageKey, personName, reasonRemedy, reasonText, t } from "../i18n";
-import { alertRank, isOpen, sortAlerts } from "../state/alerts";
+import { isOpen, sortAlerts } from "../state/alerts";
 import { shownCraftAlerts } from "../state/craftAlerts";
 import type { Alert } from "../state/mission";
 import { cursor, liveMission } from "../state/moment";
@@ -14,9 +13,9 @@ import { formatAge } from "../units/quantities";
 import { ProblemNote } from "./ProblemNote";
 
 const all = computed(() => [...mission.value.alerts, ...shownCraftAlerts.value]);
-const open = computed(() => all.value.filter(isOpen));
+export const open = computed(() => all.value.filter(isOpen));
 /** Of the mission while it lasts: what a craft without one says nobody acknowledges, it goes by itself. */
-const acknowledgeable = ({ id }: Alert) =>
+export const acknowledgeable = ({ id }: Alert) =>
   cursor.value === null && !mission.value.ended && mission.value.alerts.some((alert) => alert.id === id);
 const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
 
@@ -93,43 +92,6 @@ export function AlertsButton() {
         {!settings.value.tones && <small>{t("alerts.muted")}</small>}
       </button>
       {overlay.value === "alerts" && <AlertsSheet />}
-    </div>
-  );
-}
-
-/** Pixels that the banner takes from the map's top; 0 without one. The map's tools and its frame keep clear of it. */
-export const bannerPx = signal(0);
-
-/** The most urgent open alert, over the map until somebody acknowledges it. */
-export function AlertBanner() {
-  const first = sortAlerts(open.value)[0];
-  const shown = first !== undefined && alertRank(first.level) <= alertRank("caution");
-  const box = useRef<HTMLDivElement>(null);
-  useLayoutEffect(() => {
-    if (!box.current) return;
-    const measured = new ResizeObserver(([entry]) => {
-      bannerPx.value = Math.ceil(entry!.borderBoxSize[0]!.blockSize);
-    });
-    measured.observe(box.current);
-    return () => {
-      measured.disconnect();
-      bannerPx.value = 0;
-    };
-  }, [shown]);
-  if (!shown) return null;
-  const id = liveMission.value.missionId;
-  const remedy = reasonRemedy(first.reason);
-  return (
-    <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner" ref={box}>
-      <span>
-        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {reasonText(first.reason)}{" "}
-        {remedy && t("problem.remedy", { remedy })}
-      </span>
-      {id && acknowledgeable(first) && (
-        <button type="button" onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: first.id })}>
-          {t("alerts.acknowledge")}
-        </button>
-      )}
     </div>
   );
 }

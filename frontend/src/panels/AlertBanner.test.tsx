@@ -9,7 +9,7 @@ import { look } from "../state/moment";
 import { open } from "../state/open";
 import type { MissionEvent } from "../wire";
 import { ended, phase, record, someReason, someSpec, started } from "../wire/examples";
-import { AlertBanner } from "./AlertsButton";
+import { AlertBanner } from "./AlertBanner";
 
 const raised: MissionEvent = {
   kind: "alert_raised",
@@ -47,4 +47,31 @@ it("lets an alert be acknowledged while the flight lasts, not when it is looked 
   expect(offered(null)).toBe(1);
   expect(offered(3)).toBe(0);
   expect(offered(null, ended("aborted"))).toBe(0);
+});
+
+it("acknowledges nothing by the second tap on the alert before", () => {
+  const source = new FakeSource();
+  const all = record({ kind: "mission_drafted", spec: someSpec() }, started(), raised, { ...raised, alert_id: "b" }, phase("flying"));
+  const show = (...more: MissionEvent[]) => {
+    const events = [...all, ...record(...more).map((one, i) => ({ ...one, seq: all.length + 1 + i }))];
+    live.value = { ...live.value, mission: missionAt(events, Number.POSITIVE_INFINITY), events };
+    act(() => render(<AlertBanner />, document.body));
+  };
+  const tap = (atMs: number) => {
+    const click = new MouseEvent("click", { bubbles: true });
+    Object.defineProperty(click, "timeStamp", { value: atMs });
+    act(() => void document.querySelector("button")!.dispatchEvent(click));
+  };
+  const send = vi.spyOn(source, "send");
+  open(source);
+  vi.spyOn(performance, "now").mockReturnValue(1000);
+  show();
+  tap(3000);
+  const [, first] = send.mock.lastCall!;
+  vi.spyOn(performance, "now").mockReturnValue(3100);
+  show({ kind: "alert_acknowledged", alert_id: (first as { alert_id: string }).alert_id, by: "o" });
+  tap(3250);
+  expect(send).toHaveBeenCalledOnce();
+  tap(5000);
+  expect(send).toHaveBeenCalledTimes(2);
 });
