@@ -38,7 +38,7 @@ const wait = (ms: number) => act(() => void vi.advanceTimersByTime(ms));
 
 beforeEach(() => {
   vi.useFakeTimers();
-  vi.clearAllMocks();
+  vi.resetAllMocks();
 });
 afterEach(() => {
   act(() => render(null, document.body));
@@ -93,19 +93,27 @@ describe("held by the space bar", () => {
   });
 });
 
-it("can be drawn again after the order failed, and only then", () => {
-  onConfirm.mockImplementationOnce(() => report("plan", null));
-  report("bar", localProblem("no link", ""));
+it("can be drawn again once its own order is answered, whatever becomes of others", async () => {
+  let answer = () => {};
+  onConfirm.mockImplementation(() => new Promise<void>((resolve) => (answer = resolve)));
+  report("plan", localProblem("no link", ""));
   show();
   drag(1);
-  wait(1_000);
+  act(() => report("bar", localProblem("no link", "")));
+  act(() => {
+    problems.value = {};
+  });
+  wait(2 * EXPIRES_S * 1000);
   drag(1);
   expect(onConfirm).toHaveBeenCalledOnce();
-  act(() => report("plan", localProblem("no link", "")));
+  expect(onCancel).not.toHaveBeenCalled();
+  await act(async () => answer());
   expect(slide().getAttribute("aria-valuenow")).toBe("0");
   drag(1);
   expect(onConfirm).toHaveBeenCalledTimes(2);
-  problems.value = {};
+  await act(async () => answer());
+  wait((EXPIRES_S + 1) * 1000);
+  expect(onCancel).toHaveBeenCalled();
 });
 
 it("goes away with Escape, and by itself when it is left alone", () => {

@@ -1,7 +1,6 @@
 // Slide, or hold the space bar for 1.5 s, to confirm. Expires when it is left alone.
 import { useEffect, useRef, useState } from "preact/hooks";
 import { t } from "../i18n";
-import { problems } from "./send";
 
 export const HOLD_MS = 1500;
 export const EXPIRES_S = 20;
@@ -10,7 +9,8 @@ const CONFIRM_AT = 0.92;
 interface Properties {
   label: string;
   testId: string;
-  onConfirm: () => void;
+  /** Where it returns a promise, the slide can be drawn again once that has settled. */
+  onConfirm: () => unknown;
   onCancel: () => void;
   /** Seconds until it goes away by itself. */
   expiresS?: number;
@@ -23,14 +23,16 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
   const dragFrom = useRef<number | null>(null);
   const holding = useRef<number | null>(null);
   const heldSince = useRef<number | null>(null);
-  /** Once it was sent: how many problems there were. */
-  const confirmed = useRef<number | null>(null);
+  const confirmed = useRef(false);
 
-  const confirm = () => {
-    if (confirmed.current !== null) return;
+  const confirm = async () => {
+    if (confirmed.current) return;
+    confirmed.current = true;
     setPosition(1);
-    onConfirm();
-    confirmed.current = Object.keys(problems.peek()).length;
+    await onConfirm();
+    confirmed.current = false;
+    release();
+    setLeft(expiresS);
   };
 
   const release = () => {
@@ -38,7 +40,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
     holding.current = null;
     heldSince.current = null;
     dragFrom.current = null;
-    if (confirmed.current === null) setPosition(0);
+    if (!confirmed.current) setPosition(0);
   };
   useEffect(() => {
     track.current!.focus({ preventScroll: true });
@@ -51,15 +53,8 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
     };
   }, []);
 
-  // a slide that is still there when the order failed can be drawn again
   useEffect(() => {
-    if (confirmed.current === null || Object.keys(problems.value).length <= confirmed.current) return;
-    confirmed.current = null;
-    release();
-    setLeft(expiresS);
-  }, [problems.value]);
-  useEffect(() => {
-    if (left <= 0 && confirmed.current === null) onCancel();
+    if (left <= 0 && !confirmed.current) onCancel();
   }, [left]);
 
   const hold = (began: number) => {
@@ -70,7 +65,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
       setPosition(Math.min(1, share));
       if (share >= 1) {
         holding.current = null;
-        confirm();
+        void confirm();
       } else holding.current = requestAnimationFrame(step);
     };
     holding.current = requestAnimationFrame(step);
@@ -79,7 +74,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
   // A busy page may draw no frame in the last moment before the key comes up: the events' own times decide.
   const onKeyUp = (event: KeyboardEvent) => {
     if (event.key !== " ") return;
-    if (heldSince.current !== null && event.timeStamp - heldSince.current >= HOLD_MS) confirm();
+    if (heldSince.current !== null && event.timeStamp - heldSince.current >= HOLD_MS) void confirm();
     release();
   };
 
@@ -134,7 +129,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, expiresS = 
             setPosition(shareAt(event.clientX));
           }}
           onPointerUp={(event) => {
-            if (dragFrom.current !== null && shareAt(event.clientX) >= CONFIRM_AT) confirm();
+            if (dragFrom.current !== null && shareAt(event.clientX) >= CONFIRM_AT) void confirm();
             release();
           }}
           onPointerCancel={release}

@@ -90,9 +90,7 @@ function Changed({ id }: { id: string }) {
               testId="area-slider"
               expiresS={60}
               onCancel={clearOutlook}
-              onConfirm={() =>
-                void send("area", id, { kind: "change_area", search: judged.search }).then((accepted) => accepted && leave())
-              }
+              onConfirm={() => send("area", id, { kind: "change_area", search: judged.search }).then((accepted) => accepted && leave())}
             />
           ) : (
             <div class="start-row">

@@ -174,7 +174,7 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
           key={`${proposed.place.lat},${proposed.place.lon}`}
           label={t("proposal.slide")}
           testId="override-slider"
-          onConfirm={() => void confirmProposal()}
+          onConfirm={confirmProposal}
           onCancel={cancelProposal}
           expiresS={30}
         />

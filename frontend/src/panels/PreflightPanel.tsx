@@ -81,7 +81,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
           <SlideToConfirm
             label={t("preflight.slide")}
             testId="start-slider"
-            onConfirm={() => void send("start", missionId, { kind: "start" }).then(() => setSliding(false))}
+            onConfirm={() => send("start", missionId, { kind: "start" }).then(() => setSliding(false))}
             onCancel={() => setSliding(false)}
           />
         ) : (
