@@ -47,5 +47,7 @@ export async function confirmProposal(): Promise<void> {
   const chosen = proposal.peek();
   const { missionId: id, craftId } = liveMission.peek();
   if (!chosen || !id) return;
-  if (await send("proposal", id, { kind: "override", craft_id: craftId, place: chosen.place })) proposal.value = null;
+  const { place } = chosen;
+  const isAccepted = await send("proposal", id, { kind: "override", craft_id: craftId, place });
+  if (isAccepted && proposal.peek()?.place === place) proposal.value = null;
 }
