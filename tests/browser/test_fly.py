@@ -182,3 +182,29 @@ def test_the_last_order_counts_when_the_link_comes_back(server: Server, screen: 
     ordered = [e["reason"].get("order") for e in server.events(made) if e["kind"] == "phase_changed"]
     assert ordered[-1] == "hold"
     assert "return" not in ordered
+
+
+def test_a_hold_counts_against_a_resume_that_was_slid_before_it(server: Server, screen: Screen) -> None:
+    made = server.draft(expected_rmse_m=0.1, maximum_bearings=200)
+    screen.fly(made)
+    screen.hold()
+    late = list[Route]()
+
+    def delay(route: Route) -> None:
+        if route.request.post_data_json["command"]["kind"] == "resume":
+            late.append(route)
+        else:
+            route.continue_()
+
+    screen.page.route("**/commands", delay)
+    screen.offer_resume()
+    with screen.page.expect_request("**/commands"):
+        screen.slide("resume-slider")
+    with screen.page.expect_response("**/commands"):
+        screen.part("hold").click()
+    with screen.page.expect_response("**/commands"):
+        late[0].continue_()
+    screen.page.wait_for_timeout(2000)
+    screen.expect_phase("hold")
+    ordered = [e["reason"].get("order") for e in server.events(made) if e["kind"] == "phase_changed"]
+    assert ordered[-2:] == ["resume", "hold"]

@@ -1,7 +1,7 @@
 // The phone's bearings go to the server one after the other; without a link they wait in the browser.
 import { computed, signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
-import { RequestFailed } from "../sources/problem";
+import { isRefusal, RequestFailed } from "../sources/problem";
 import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } from "../sources/reportsApi";
 import { add, answered, lastOf, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
 import { keep } from "../state/kept";
@@ -42,14 +42,7 @@ function change(next: (queue: Queue) => Queue): void {
   keeps = keep(KEY, queue.peek());
 }
 
-/** The server's own no; anything else is a link that may come back. */
-const refused = (error: unknown): string | null =>
-  error instanceof RequestFailed &&
-  error.problem.status >= 400 &&
-  error.problem.status < 500 &&
-  ![401, 408, 429].includes(error.problem.status)
-    ? error.problem.detail || error.problem.title
-    : null;
+const refused = (error: unknown): string | null => (isRefusal(error) ? error.problem.detail || error.problem.title : null);
 
 const isUnknown = (error: unknown) =>
   error instanceof RequestFailed && (error.problem.status === 404 || error.problem.reason?.code === "no_such_bearing");

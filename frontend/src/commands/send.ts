@@ -31,13 +31,17 @@ export const asProblem = (error: unknown): Problem => asFailure(error).problem;
 const LOOKS = 60;
 const LOOK_MS = 50;
 
-/** When nobody controls the search, whoever orders takes control first: the order is a deliberate act already. */
-async function steered(from: Source, missionId: string, command: Command): Promise<CommandReply> {
+/**
+ * When nobody controls the search, whoever orders takes control first: the order is a deliberate act already.
+ * isWanted: still, once control is taken.
+ */
+export async function steered(from: Source, missionId: string, command: Command, isWanted = () => true): Promise<CommandReply> {
   const reply = await from.send(missionId, command, undefined, fenceOf(missionId));
   if (reply.accepted || reply.reason?.code !== "control_free") return reply;
   const taken = await from.send(missionId, { kind: "take_control" });
   if (!taken.accepted) return taken;
-  return from.send(missionId, command, undefined, await fenceComes(missionId));
+  const fence = await fenceComes(missionId);
+  return isWanted() ? from.send(missionId, command, undefined, fence) : reply;
 }
 
 /** The change of hands comes as an event, a moment after the answer. */

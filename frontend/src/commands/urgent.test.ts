@@ -6,7 +6,7 @@ import type { Flown } from "../state/flying";
 import { open } from "../state/open";
 import type { Reason } from "../wire";
 import { problems } from "./send";
-import { countermand, sendUrgent, urgent } from "./urgent";
+import { resume, sendUrgent, urgent } from "./urgent";
 
 const M: Flown = { id: "m", craftId: "c", phase: "flying" };
 
@@ -126,7 +126,7 @@ it("of one craft is not ended, nor kept back, by one of another", async () => {
   void sendUrgent(other, "hold");
   source.answer = () => Promise.resolve(accepted);
   await vi.advanceTimersByTimeAsync(800);
-  expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["m return", "n return", "n hold", "m return", "n hold"]);
+  expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["m return", "n return", "n hold", "m return", "n hold", "n hold"]);
 });
 
 it("goes on when a newer one is refused", async () => {
@@ -155,9 +155,9 @@ it("stays behind once the search was resumed, however late an answer comes", asy
   source.answer = () => Promise.resolve(accepted);
   void sendUrgent(M, "hold");
   await vi.advanceTimersByTimeAsync(100);
-  countermand("m");
+  void resume(M);
   await vi.advanceTimersByTimeAsync(2_000);
-  expect(kinds()).toEqual(["return", "hold"]);
+  expect(kinds()).toEqual(["return", "hold", "resume"]);
 });
 
 it("does not bring an older one back before a newer one that is still on its way", async () => {

@@ -1,10 +1,12 @@
-// Abort, hold, return and landing: sent at once, and again under the same id until the server answers.
+// Abort, hold, return and landing: sent at once, and again under the same id until the server answers. The last one given
+// counts, however the answers come: where an older one may have been carried out after it, it goes out once more.
 import { signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
-import { RequestFailed, refusal } from "../sources/problem";
-import { source } from "../state/connection";
+import { isRefusal, refusal } from "../sources/problem";
+import { live, source } from "../state/connection";
 import type { Flown } from "../state/flying";
-import { asProblem, report } from "./send";
+import type { Problem } from "../wire";
+import { asProblem, report, steered } from "./send";
 
 export type Urgent = "abort" | "hold" | "return" | "land";
 
@@ -23,28 +25,42 @@ const RETRY_MS = 700;
 const GIVE_UP_AFTER = 60;
 const SHOWN_MS = 4000;
 
-interface Order {
-  flown: Flown;
-  kind: Urgent;
+/** An urgent order, or a resume. */
+interface Given {
   /** The mission that it goes to, or the craft that flies for none. */
   to: string;
-  shown: UrgentState | null;
-  /** It is tried no more: the newer one that was accepted instead, null when it does not matter which. */
-  endedBy?: Order | null;
-  /** An older one was accepted while this was on its way, and may have been carried out after it. */
-  isCrossed?: boolean;
-  isRepeat?: boolean;
+  /** What was given later has a greater one; a repeat has its first one's. */
+  n: number;
 }
 
-/** The first given first. An abort waits for nothing, and nothing ends it. */
+interface Order extends Given {
+  flown: Flown;
+  kind: Urgent;
+  shown: UrgentState | null;
+  /** It is tried no more: something newer counts. */
+  isEnded?: boolean;
+  /** An older one may have been carried out after it. */
+  isCrossed?: boolean;
+}
+
+let presses = 0;
+
+/** An abort waits for nothing, and nothing ends it. */
 const underWay = new Set<Order>();
 
-const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to);
+/** By where it went: the last one given of those that were accepted, or that ran out of tries. */
+const settled = new Map<string, Given>();
 
-const newerThan = (own: Order): Order[] => {
-  const all = ordersTo(own.to);
-  return all.slice(all.indexOf(own) + 1);
-};
+/** Leaving the page forgets them: the browser asks first. */
+addEventListener("beforeunload", (event) => underWay.size > 0 && event.preventDefault());
+
+const toOf = ({ id, craftId }: Flown): string => id ?? craftId;
+const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to && !order.isEnded);
+const newerThan = (own: Given): Order[] => ordersTo(own.to).filter(({ n }) => n > own.n);
+const lastSettled = (own: Given): Given => settled.get(own.to) ?? { to: own.to, n: 0 };
+
+/** What was refused since does not count. */
+const isLast = (own: Given): boolean => newerThan(own).length === 0 && lastSettled(own).n <= own.n;
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -57,43 +73,89 @@ function show(own: Order, state: UrgentState | null): void {
   own.shown = state;
 }
 
-function end(order: Order, by: Order | null): void {
+function end(order: Order): void {
   if (order.kind === "abort") return;
-  order.endedBy = by;
+  order.isEnded = true;
   show(order, null);
 }
 
-/** Somebody has ordered something else since: what is still on its way is not tried again. */
-export function countermand(to: string): void {
-  for (const order of ordersTo(to)) end(order, null);
+/** A resume never goes out by itself. */
+function repeat(given: Given | Order): void {
+  if ("kind" in given) void give(given.flown, given.kind, given.n, true);
 }
 
-const repeat = ({ flown, kind, to }: Order): void => void give({ flown, kind, to, shown: null, isRepeat: true });
+/** It may have been carried out just now. */
+function cross(own: Given): void {
+  const last = lastSettled(own);
+  const newer = newerThan(own);
+  for (const order of newer) order.isCrossed = true;
+  if (last.n > own.n && !newer.some(({ n }) => n === last.n)) repeat(last);
+}
+
+/** What was given before it is not tried again. */
+function settle(own: Given): void {
+  cross(own);
+  if (own.n >= lastSettled(own).n) settled.set(own.to, own);
+  for (const order of ordersTo(own.to)) if (order.n < own.n) end(order);
+}
 
 /** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
 export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
-  const to = flown.id ?? flown.craftId;
+  const to = toOf(flown);
   const before = ordersTo(to);
-  const alike = before.filter((order) => order.kind === kind && order.endedBy === undefined);
-  const isPressed = alike.some((order) => isShown(order) && (kind === "abort" || order === before.at(-1)));
-  if (isPressed || (flown.id === null && kind === "abort")) return;
-  for (const order of alike) end(order, null);
+  const alike = before.filter((order) => order.kind === kind);
+  const pressed = alike.find((order) => isShown(order) && (kind === "abort" || newerThan(order).length === 0));
+  if (flown.id === null && kind === "abort") return;
+  const n = ++presses;
+  if (pressed) {
+    pressed.n = n;
+    return;
+  }
+  for (const order of alike) end(order);
   for (const order of before) if (kind !== "abort" && order.kind !== "abort") show(order, null);
   report("bar", null);
-  await give({ flown, kind, to, shown: null });
+  await give(flown, kind, n);
 }
 
-async function give(own: Order): Promise<void> {
-  const { id, craftId } = own.flown;
-  const { kind } = own;
+/** Of one craft. A second try under the same id would say nothing new: it is given once, and not at all after a newer order. */
+export async function resume(flown: Flown): Promise<void> {
+  const { id, craftId } = flown;
+  const own: Given = { to: toOf(flown), n: ++presses };
+  let problem: Problem;
+  report("bar", null);
+  try {
+    const from = source.peek()!;
+    const reply = await (id !== null
+      ? steered(from, id, { kind: "resume", craft_id: craftId }, () => isLast(own))
+      : from.order(craftId, { kind: "resume" }));
+    if (reply.accepted) {
+      // what was ordered before may still be due to the mission's other crafts
+      (live.peek().mission.crafts.size > 1 ? cross : settle)(own);
+      return;
+    }
+    problem = refusal(reply.reason);
+  } catch (error) {
+    if (!isRefusal(error)) cross(own);
+    problem = asProblem(error);
+  }
+  if (isLast(own)) report("bar", problem);
+}
+
+async function give(flown: Flown, kind: Urgent, n: number, isRepeat = false): Promise<void> {
+  const { id, craftId } = flown;
+  const own: Order = { flown, kind, n, to: toOf(flown), shown: null };
   const commandId = newCommandId();
   underWay.add(own);
-  for (let tries = 0; tries < GIVE_UP_AFTER && own.endedBy === undefined; ) {
+  for (let tries = 0; !own.isEnded; ) {
     // an abort may be refused where a hold is not: only another kind is waited for
-    if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort" && order.endedBy === undefined)) {
+    if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort")) {
       show(own, null);
       await pause(RETRY_MS);
       continue;
+    }
+    if (tries === GIVE_UP_AFTER) {
+      settle(own);
+      break;
     }
     show(own, { stage: tries === 0 ? "sending" : "retrying", count: tries });
     tries += 1;
@@ -102,28 +164,22 @@ async function give(own: Order): Promise<void> {
       const reply = await (id !== null
         ? from.send(id, { kind }, commandId)
         : from.order(craftId, { kind: kind as InNoMission }, commandId));
-      const newer = newerThan(own);
-      if (reply.accepted) for (const order of newer) order.isCrossed = true;
-      if (own.endedBy !== undefined) {
-        if (reply.accepted && own.endedBy && newer.length === 0) repeat(own.endedBy);
-        break;
+      if (reply.accepted) {
+        underWay.delete(own);
+        settle(own);
       }
-      if (!own.isRepeat) report("bar", reply.accepted ? null : refusal(reply.reason));
+      if (own.isEnded) break;
+      report("bar", reply.accepted || isRepeat ? null : refusal(reply.reason));
       if (!reply.accepted) break;
-      for (const order of ordersTo(own.to)) {
-        if (order === own) break;
-        end(order, own);
-      }
-      underWay.delete(own);
-      if (own.isCrossed && newer.length === 0) repeat(own);
+      if (own.isCrossed && settled.get(own.to) === own) repeat(own);
       show(own, { stage: "accepted", count: tries - 1 });
       await pause(SHOWN_MS);
       break;
     } catch (error) {
-      if (own.endedBy !== undefined) break;
+      if (!isRefusal(error)) cross(own);
+      if (own.isEnded) break;
       report("bar", asProblem(error));
-      const refused = error instanceof RequestFailed && error.problem.status >= 400 && error.problem.status < 500;
-      if (refused) break;
+      if (isRefusal(error)) break;
       await pause(RETRY_MS);
     }
   }

@@ -2,15 +2,14 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { landingArmed } from "../commands/landing";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { asProblem, report, send } from "../commands/send";
-import { countermand, sendUrgent, type Urgent, urgent } from "../commands/urgent";
+import { send } from "../commands/send";
+import { resume, sendUrgent, type Urgent, urgent } from "../commands/urgent";
 import { type MessageKey, reasonText, t } from "../i18n";
-import { refusal } from "../sources/problem";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
 import { nowMs } from "../state/clock";
-import { live, serverNowMs, source } from "../state/connection";
+import { live, serverNowMs } from "../state/connection";
 import { NOBODY, pilotHas } from "../state/craft";
-import { type Flown, flying } from "../state/flying";
+import { flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
 import { cursor, events } from "../state/moment";
@@ -72,21 +71,6 @@ function Landing() {
       />
     </div>
   );
-}
-
-async function resume({ id, craftId }: Flown): Promise<void> {
-  if (id !== null) {
-    if (await send("bar", id, { kind: "resume", craft_id: craftId })) countermand(id);
-    return;
-  }
-  report("bar", null);
-  try {
-    const reply = await source.peek()!.order(craftId, { kind: "resume" });
-    if (reply.accepted) countermand(craftId);
-    else report("bar", refusal(reply.reason));
-  } catch (error) {
-    report("bar", asProblem(error));
-  }
 }
 
 function Resume() {

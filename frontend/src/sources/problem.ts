@@ -14,6 +14,10 @@ export class RequestFailed extends Error {
   }
 }
 
+/** The server's own no; anything else is a link, or a session, that may come back. */
+export const isRefusal = (error: unknown): error is RequestFailed =>
+  error instanceof RequestFailed && /^4(?!01|08|29)/.test(`${error.problem.status}`);
+
 /** Found by the page itself, before it asks the server. */
 export const localProblem = (title: string, detail: string, status = 0): Problem => ({
   type: "about:blank",

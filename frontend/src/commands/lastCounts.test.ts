@@ -1,0 +1,224 @@
+// @vitest-environment happy-dom
+// Of two orders the last one pressed counts, whatever becomes of either on its way.
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { accepted, FakeSource } from "../sources/fakeSource";
+import { localProblem, RequestFailed, unreachable } from "../sources/problem";
+import { live } from "../state/connection";
+import type { Flown } from "../state/flying";
+import { emptyLive } from "../state/live";
+import { open } from "../state/open";
+import type { Command, CommandReply } from "../wire";
+import { confirmProposal, proposal } from "./proposal";
+import { problems } from "./send";
+import { resume, sendUrgent, urgent } from "./urgent";
+
+const M: Flown = { id: "m", craftId: "c", phase: "flying" };
+const refused: CommandReply = { ...accepted, accepted: false, reason: { code: "pilot_controls" } };
+
+type Fate = "at once" | "late" | "late reply" | "lost" | "reply lost" | "late, reply lost" | "refused";
+/** A number: the status of the answer. */
+type Answer = Fate | number;
+
+const after = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/** A server that carries out each command id once, behind a link that treats the first try of each kind as is told. */
+class Served extends FakeSource {
+  readonly done: string[] = [];
+  private readonly known = new Map<string, CommandReply>();
+  constructor(private readonly fates: Partial<Record<Command["kind"], Answer[]>>) {
+    super("m");
+  }
+  private carryOut(kind: Command["kind"], id: string, fate?: Fate): CommandReply {
+    const known = this.known.get(id);
+    if (known) return known;
+    const reply = fate === "refused" ? refused : accepted;
+    if (reply.accepted) this.done.push(kind);
+    this.known.set(id, reply);
+    return reply;
+  }
+  override async send(missionId: string, command: Command, commandId = String(Math.random())): Promise<CommandReply> {
+    await super.send(missionId, command, commandId);
+    const fate = this.fates[command.kind]?.shift();
+    if (typeof fate === "number") throw new RequestFailed(localProblem("no", "", fate));
+    if (fate === "lost") throw unreachable("no link");
+    if (fate?.startsWith("late") && fate !== "late reply") await after(300);
+    const reply = this.carryOut(command.kind, commandId, fate);
+    if (fate === "late reply") await after(300);
+    if (fate?.endsWith("reply lost")) throw unreachable("no link");
+    return reply;
+  }
+}
+
+let source: Served;
+const begin = (fates: Partial<Record<Command["kind"], Answer[]>>) => {
+  source = new Served(fates);
+  open(source);
+};
+const pass = (ms = 10_000) => vi.advanceTimersByTimeAsync(ms);
+const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
+
+beforeEach(() => {
+  vi.useFakeTimers();
+});
+afterEach(async () => {
+  await vi.runAllTimersAsync();
+  vi.useRealTimers();
+  problems.value = {};
+  live.value = emptyLive;
+});
+
+const FATES: Fate[] = ["at once", "late", "late reply", "lost", "reply lost", "late, reply lost", "refused"];
+const PAIRS = FATES.flatMap((older) => FATES.map((newer) => [older, newer] as const));
+
+const KINDS = [
+  ["return", "hold"],
+  ["hold", "land"],
+  ["abort", "hold"],
+  ["hold", "abort"],
+] as const;
+
+describe.each(KINDS)("of %s, then %s", (first, last) => {
+  it.each(PAIRS)("the older %s and the newer %s: the last one counts", async (older, newer) => {
+    begin({ [first]: [older], [last]: [newer] });
+    void sendUrgent(M, first);
+    await pass(100);
+    void sendUrgent(M, last);
+    await pass();
+    const counts = newer === "refused" ? (older === "refused" ? undefined : first) : last;
+    expect(source.done.at(-1)).toBe(counts);
+    expect(urgent.value).toEqual({});
+  });
+});
+
+describe("a resume, then a hold", () => {
+  it.each(PAIRS)("the resume %s and the hold %s: the hold counts", async (older, newer) => {
+    begin({ resume: [older], hold: [newer] });
+    void resume(M);
+    await pass(100);
+    void sendUrgent(M, "hold");
+    await pass();
+    const resumed = older === "refused" || older === "lost" ? undefined : "resume";
+    expect(source.done.at(-1)).toBe(newer === "refused" ? resumed : "hold");
+  });
+});
+
+describe("a hold, then a resume", () => {
+  it.each(["at once", "late reply", "reply lost", "lost"] as const)("the hold %s: the resume counts", async (older) => {
+    begin({ hold: [older, "lost"] });
+    void sendUrgent(M, "hold");
+    await pass(100);
+    void resume(M);
+    await pass();
+    expect(source.done.at(-1)).toBe("resume");
+    expect(sent("resume")).toHaveLength(1);
+  });
+
+  it("and the hold pressed again while its first press is on its way: the hold counts", async () => {
+    begin({ hold: ["reply lost"], resume: ["late"] });
+    void sendUrgent(M, "hold");
+    await pass(50);
+    void resume(M);
+    void sendUrgent(M, "hold");
+    await pass();
+    expect(source.done.at(-1)).toBe("hold");
+    expect(source.done).toContain("resume");
+  });
+
+  it("ends no order that the mission's other craft may still need", async () => {
+    begin({ hold: ["lost"] });
+    const crafts = new Map(["c", "d"].map((id) => [id, {}])) as unknown as typeof emptyLive.mission.crafts;
+    live.value = { ...emptyLive, mission: { ...emptyLive.mission, crafts } };
+    void sendUrgent(M, "hold");
+    await pass(100);
+    void resume(M);
+    await pass();
+    expect(source.done).toEqual(["resume", "hold"]);
+  });
+});
+
+it("does not resume once control is taken, where something was ordered meanwhile", async () => {
+  begin({});
+  source.answer = () => Promise.resolve(accepted);
+  const free: CommandReply = { ...accepted, accepted: false, reason: { code: "control_free" } };
+  const send = source.send.bind(source);
+  vi.spyOn(source, "send").mockImplementation(async (...order) => {
+    const reply = await send(...order);
+    if (order[1].kind === "take_control") await after(300);
+    return order[1].kind === "resume" && sent("resume").length === 1 ? free : reply;
+  });
+  void resume(M);
+  await pass(100);
+  void sendUrgent(M, "hold");
+  await pass();
+  expect(source.sent.map(({ kind }) => kind)).toEqual(["resume", "take_control", "hold"]);
+  expect(problems.value.bar).toBeUndefined();
+  void resume(M);
+  await pass();
+  expect(sent("resume")).toHaveLength(2);
+});
+
+it("does not bring back what a newer order took the place of that ran out of tries", async () => {
+  begin({ hold: ["lost"], return: Array<Fate>(60).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(200);
+  void sendUrgent(M, "return");
+  await pass(120_000);
+  expect(source.done).toEqual([]);
+  expect(sent("return")).toHaveLength(60);
+  expect(urgent.value).toEqual({});
+  expect(problems.value.bar).toBeDefined();
+});
+
+it("says no more that the server does not answer when an order that went out once more got through", async () => {
+  begin({ return: ["late"], hold: ["at once", "lost"] });
+  void sendUrgent(M, "return");
+  await pass(100);
+  void sendUrgent(M, "hold");
+  await pass(400);
+  expect(problems.value.bar).toBeDefined();
+  await pass();
+  expect(source.done).toEqual(["hold", "return", "hold"]);
+  expect(problems.value.bar).toBeUndefined();
+});
+
+it.each([401, 408, 429, 503])("goes on after a %d, which is no refusal", async (status) => {
+  begin({ hold: [status] });
+  void sendUrgent(M, "hold");
+  await pass();
+  expect(source.done).toEqual(["hold"]);
+  expect(new Set(sent("hold").map(({ commandId }) => commandId)).size).toBe(1);
+});
+
+it("orders of another craft change nothing", async () => {
+  begin({ hold: ["lost"], return: ["at once"] });
+  void sendUrgent(M, "hold");
+  void sendUrgent({ id: "n", craftId: "d", phase: "flying" }, "return");
+  await pass();
+  expect(source.done).toEqual(["return", "hold"]);
+});
+
+it("asks before the page is left while an order is on its way", async () => {
+  begin({ hold: ["lost"] });
+  const asks = () => !dispatchEvent(new Event("beforeunload", { cancelable: true }));
+  expect(asks()).toBe(false);
+  void sendUrgent(M, "hold");
+  await pass(100);
+  expect(asks()).toBe(true);
+  await pass();
+  expect(asks()).toBe(false);
+});
+
+it("a newer proposal outlives the answer to the older one", async () => {
+  begin({ override: ["late reply"] });
+  live.value = { ...emptyLive, mission: { ...emptyLive.mission, missionId: "m" } };
+  const proposed = (lat: number) => ({ place: { lat, lon: 7 }, result: null, problem: null, withPlanner: true });
+  proposal.value = proposed(50);
+  void confirmProposal();
+  await pass(100);
+  const newer = proposed(51);
+  proposal.value = newer;
+  await pass();
+  expect(proposal.value).toBe(newer);
+  await Promise.all([confirmProposal(), pass()]);
+  expect(proposal.value).toBeNull();
+});
