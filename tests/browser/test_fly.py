@@ -182,12 +182,10 @@ def test_the_last_order_counts_when_the_link_comes_back(server: Server, screen: 
     ordered = [e["reason"].get("order") for e in server.events(made) if e["kind"] == "phase_changed"]
     assert ordered[-1] == "hold"
     assert "return" not in ordered
+    it_counts_against_a_resume_that_comes_late(server, screen, made)
 
 
-def test_a_hold_counts_against_a_resume_that_was_slid_before_it(server: Server, screen: Screen) -> None:
-    made = server.draft(expected_rmse_m=0.1, maximum_bearings=200)
-    screen.fly(made)
-    screen.hold()
+def it_counts_against_a_resume_that_comes_late(server: Server, screen: Screen, made: str) -> None:
     late = list[Route]()
 
     def delay(route: Route) -> None:
