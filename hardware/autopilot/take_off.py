@@ -47,9 +47,11 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
     monitor = guidance.monitor
     snapshot, dialect, clock = monitor.snapshot, monitor.dialect, monitor.clock
 
+    stood_m = snapshot.altitude_relative_m or 0.0
+
     def rising() -> bool:
         up = snapshot.altitude_relative_m
-        return bool(snapshot.armed) and up is not None and up > min(1.0, 0.5 * relative_m)
+        return bool(snapshot.armed) and up is not None and up - stood_m > min(1.0, 0.5 * (relative_m - stood_m))
 
     deadline, attempt = Deadline(clock, LEAVE_GROUND_S, 5.0), 1
     trouble: AutopilotRefused | TakeOffIgnored = TakeOffIgnored()
@@ -71,7 +73,8 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
         except CommandDenied as denied:
             trouble = denied.refusal
         attempt += 1
-        await guidance.until(manoeuvre, Deadline(clock, 2.0, 0.2), lambda: False)
+        if await guidance.until(manoeuvre, Deadline(clock, 2.0, 0.2), rising):
+            return  # in the air an autopilot refuses the order whose answer was lost before
         if isinstance(trouble, AutopilotRefused):  # why comes as a text, a moment after the answer
             trouble = replace(trouble, said=" / ".join(monitor.said_since(began_s)[-MOST_SAID:]))
         monitor.announce(TriedAgain(trouble, attempt))

@@ -72,6 +72,8 @@ class Faults:
     silent: int = 0
     unanswered: int = 0
     """Obeyed, but their acknowledgements get lost."""
+    unanswered_of: int = 0
+    """Of this MAV_CMD only; 0: of any."""
     link_lost_until: float = -1.0
     link_delay: float = 0.0
     """Seconds each way."""
@@ -205,7 +207,7 @@ class Firmware(ABC):
             faults.ignore_all -= 1
             return ACCEPTED
         result = self.carry_out(command)
-        if faults.unanswered > 0:
+        if faults.unanswered > 0 and faults.unanswered_of in (0, command.number):
             faults.unanswered -= 1
             return None
         return result

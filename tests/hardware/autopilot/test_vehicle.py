@@ -219,6 +219,16 @@ async def test_take_off_waits_out_an_autopilot_that_is_not_ready_and_says_so(px4
     assert px4.vehicle.telemetry().in_air
 
 
+async def test_a_take_off_whose_answer_was_lost_is_no_failure(rig: Rig) -> None:
+    """In the air ArduCopter refuses the repeated order: it hovered for a minute, and was said not to have left."""
+    await rig.sim.order("fault", kind="unanswered", count=1, of=TAKE_OFF)
+    await asyncio.wait_for(rig.vehicle.take_off(10.0), 60)
+
+    assert rig.vehicle.telemetry().in_air
+    sent = (await rig.sim.order("commands", since_s=0.0))["commands"]
+    assert [number for _, number in sent].count(TAKE_OFF) <= 2
+
+
 async def test_a_pilot_who_selects_a_mode_on_the_ground_ends_the_take_off(px4: Rig) -> None:
     await px4.clock.sleep(7.0)
     await px4.sim.order("prearm", ok=False)
