@@ -107,8 +107,16 @@ class Commander:
         if manoeuvre.superseded_by is not None:
             raise ManoeuvreSuperseded(ManoeuvreReplaced(manoeuvre.name, manoeuvre.superseded_by))
 
-    async def send(self, manoeuvre: Manoeuvre, outgoing: Outgoing, modes: frozenset[int], command: CommandName) -> None:
-        """Send a flight command until it is acknowledged. modes: the raw modes that are ours after it.
+    async def send(
+        self,
+        manoeuvre: Manoeuvre,
+        outgoing: Outgoing,
+        modes: frozenset[int],
+        command: CommandName,
+        again: Callable[[], Outgoing] | None = None,
+    ) -> None:
+        """Send a flight command until it is acknowledged. modes: the raw modes that are ours after it. again: what goes
+        out where it was not answered; None: the same.
 
         One that changes the mode goes right after the vehicle's own word of its mode: sent blindly, it would undo a
         pilot's switch; and not again once its mode shows, though its answer got lost. Any other goes only while the
@@ -123,6 +131,8 @@ class Commander:
 
         in_mode_before, order = self._control.authority.heard in modes, _Order()
         for attempt in range(1, ATTEMPTS + 1):
+            if attempt > 1 and again is not None:
+                outgoing = again()
             if outgoing.changes_mode:
                 await self._mode_heard()
             self.check(manoeuvre)

@@ -7,6 +7,8 @@ at up to 70 degrees a second, from a swing all the way round, so the nose is ord
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from hardware.autopilot.commander import CommandDenied, Manoeuvre, ManoeuvreSuperseded, OutOfMode
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hover import Hover
@@ -19,7 +21,7 @@ from hardware.reasons.vehicle_news import StillMoving, TriedAgain
 BRAKES_S, BRAKES_WALL_S = 3.0, 1.5
 """This long after a hold was ordered, the vehicle must be in a hold mode and slower."""
 SLOWER, NEVER_FAST_M_S = 0.6, 2.0
-"""Slower: than this share of the highest speed seen since; what never was faster than NEVER_FAST_M_S need not be."""
+"""Slower: than this share of the highest speed since the order; what was never faster than NEVER_FAST_M_S need not."""
 TAKEN_S = 0.2
 """An order to hold that has arrived is surely taken after this. One of the nose alone that is taken together with it
 would put the place that was flown to before in its stead; PX4 looks for orders twenty times a second."""
@@ -55,13 +57,14 @@ async def hold(guidance: Guidance) -> None:
 async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> bool:
     """True when it came to rest, or at least obeys; False when it does not."""
     monitor, dialect, snapshot = guidance.monitor, guidance.monitor.dialect, guidance.monitor.snapshot
-    fast = (snapshot.speed_m_s or 0.0) > NEVER_FAST_M_S
+    highest_m_s = snapshot.speed_m_s or 0.0
+    fast = highest_m_s > NEVER_FAST_M_S
     await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
     brakes = Deadline(monitor.clock, BRAKES_S, BRAKES_WALL_S)
     rests = Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S)
     if fast and dialect.hold_turns_nose:
         await _keep_nose(guidance, manoeuvre)
-    hover, hovers, highest_m_s = Hover(), False, 0.0
+    hover, hovers = Hover(), False
 
     def obeys() -> bool:
         slower = (snapshot.speed_m_s or 0.0) <= max(NEVER_FAST_M_S, SLOWER * highest_m_s)
@@ -78,10 +81,11 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
             hovers = hover.see(snapshot.position, snapshot.speed_m_s, snapshot.position_at_s, in_mode)
         return hovers or (brakes.passed and not obeys())
 
-    if dialect.stay is not None:
+    stay = dialect.stay
+    if stay is not None:
         await guidance.until(manoeuvre, rests, lambda: decided() or nearly_rests())
         if nearly_rests():
-            await _said(guidance, manoeuvre, dialect.stay)
+            await _said(guidance, manoeuvre, lambda: stay)
     if await guidance.until(manoeuvre, rests, decided):
         return hovers
     monitor.announce(StillMoving(snapshot.speed_m_s or 0.0))
@@ -89,17 +93,17 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
 
 
 async def _keep_nose(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
-    """The nose stays where it is while the vehicle brakes."""
+    """The nose stays where it is while the vehicle brakes: sent again, where it is by then."""
     snapshot, modes = guidance.monitor.snapshot, guidance.monitor.dialect.hold_modes
     await guidance.until(manoeuvre, Deadline(guidance.monitor.clock, TAKEN_S), lambda: False)
     if snapshot.heading_deg is not None and snapshot.custom_mode in modes:
-        await _said(guidance, manoeuvre, yaw_alone(snapshot.heading_deg))
+        await _said(guidance, manoeuvre, lambda: yaw_alone(snapshot.heading_deg or 0.0))
 
 
-async def _said(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> None:
+async def _said(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Callable[[], Outgoing]) -> None:
     """Sent to a vehicle that holds. Refused or unanswered, it holds all the same, only less quietly."""
     try:
-        await guidance.send(manoeuvre, outgoing, guidance.monitor.dialect.hold_modes, "hold")
+        await guidance.send(manoeuvre, outgoing(), guidance.monitor.dialect.hold_modes, "hold", again=outgoing)
     except (NotInControl, ManoeuvreSuperseded):
         raise
     except VehicleError:

@@ -117,3 +117,28 @@ async def test_a_nose_is_left_alone_by_a_hold_of_a_vehicle_that_hovers(flying: S
     await moves(flying, 0.2, SETTLED_S + 0.5)
     await asyncio.wait_for(ordered, 1.0)
     assert [fields["param4"] for fields in flying.link.fields if fields["command"] == REPOSITION] == [None, None]
+
+
+async def test_an_order_of_the_nose_that_was_lost_is_repeated_with_the_heading_of_then(
+    flying: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One lost frame turned a nose by 186 degrees, and a vehicle that braked was ordered to hold once more."""
+    monkeypatch.setattr("hardware.autopilot.hold.BRAKES_WALL_S", 0.0)
+    monkeypatch.setattr("hardware.autopilot.commander.ACK_WALL_S", 0.0)
+    flying.hear("ATTITUDE", {"time_boot_ms": 1, "roll": 0.0, "pitch": 0.0, "yaw": 2.0, "yawspeed": -0.5})
+    ordered = await holding(flying)
+    flying.link.answers = False
+    while flying.link.sent == [REPOSITION]:
+        await moves(flying, 6.5, 0.1)
+    flying.link.answers = True
+    flying.hear("ATTITUDE", {"time_boot_ms": 2, "roll": 0.0, "pitch": 0.0, "yaw": 1.2, "yawspeed": -0.5})
+    while flying.link.sent == [REPOSITION] * 2:
+        await moves(flying, 5.0, 0.1)
+        await asyncio.sleep(0.02)  # an answer is waited for by the wall
+    told = [fields["param4"] for fields in flying.link.fields if fields["command"] == REPOSITION]
+    noses = [yaw for yaw in told if yaw is not None]
+    assert noses == pytest.approx([2.0, 1.2])
+    await moves(flying, 3.5, BRAKES_S)
+    assert len(flying.link.sent) == 3
+    await moves(flying, 0.1, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)
