@@ -22,8 +22,11 @@ export interface UrgentState {
 export const urgent = signal<Partial<Record<Urgent, UrgentState>>>({});
 
 const RETRY_MS = 700;
-const GIVE_UP_AFTER = 60;
+/** By then the server sends a vehicle home whose consoles are gone; later an order would act on one that its giver no longer sees. */
+const GIVE_UP_MS = 60_000;
 const SHOWN_MS = 4000;
+const TAP_MS = 600;
+const STEERING: readonly string[] = ["hold", "return", "land", "resume", "abort"];
 
 /** An urgent order, or a resume. */
 interface Given {
@@ -36,14 +39,17 @@ interface Given {
 interface Order extends Given {
   flown: Flown;
   kind: Urgent;
+  commandId: string;
+  pressedMs: number;
   shown: UrgentState | null;
   /** It is tried no more: something newer counts. */
   isEnded?: boolean;
-  /** An older one may have been carried out after it. */
+  /** It goes out once more when it is accepted: it was pressed again, or an older one may have been carried out after it. */
   isCrossed?: boolean;
 }
 
 let presses = 0;
+const ownIds = new Set<string>();
 
 /** An abort waits for nothing, and nothing ends it. */
 const underWay = new Set<Order>();
@@ -59,7 +65,7 @@ const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.
 const newerThan = (own: Given): Order[] => ordersTo(own.to).filter(({ n }) => n > own.n);
 const lastSettled = (own: Given): Given => settled.get(own.to) ?? { to: own.to, n: 0 };
 
-/** What was refused since does not count. */
+/** Refused orders do not count. */
 const isLast = (own: Given): boolean => newerThan(own).length === 0 && lastSettled(own).n <= own.n;
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
@@ -79,9 +85,16 @@ function end(order: Order): void {
   show(order, null);
 }
 
-/** A resume never goes out by itself. */
+/** As far as the journal is heard here. */
+function isOvertaken({ commandId }: Order): boolean {
+  const accepted = live.peek().events.flatMap(({ event }) => (event.kind === "command_accepted" ? [event] : []));
+  const at = accepted.findIndex(({ command_id }) => command_id === commandId);
+  return at >= 0 && accepted.slice(at).some(({ command, command_id }) => STEERING.includes(command) && !ownIds.has(command_id));
+}
+
+/** A resume never goes out by itself, nor anything over what somebody else has ordered since. */
 function repeat(given: Given | Order): void {
-  if ("kind" in given) void give(given.flown, given.kind, given.n, true);
+  if ("kind" in given && !isOvertaken(given)) void give(given.flown, given.kind, given.n, true);
 }
 
 /** It may have been carried out just now. */
@@ -93,10 +106,10 @@ function cross(own: Given): void {
 }
 
 /** What was given before it is not tried again. */
-function settle(own: Given): void {
+function settle(own: Given, endsOlder = true): void {
   cross(own);
   if (own.n >= lastSettled(own).n) settled.set(own.to, own);
-  for (const order of ordersTo(own.to)) if (order.n < own.n) end(order);
+  if (endsOlder) for (const order of ordersTo(own.to)) if (order.n < own.n) end(order);
 }
 
 /** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
@@ -108,8 +121,12 @@ export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
   if (flown.id === null && kind === "abort") return;
   const n = ++presses;
   if (pressed) {
+    const isTap = Date.now() - pressed.pressedMs < TAP_MS;
     pressed.n = n;
-    return;
+    pressed.pressedMs = Date.now();
+    pressed.isCrossed ||= !isTap && kind !== "abort";
+    // somebody may have resumed while the first one's answer is on its way
+    if (isTap || kind !== "hold") return;
   }
   for (const order of alike) end(order);
   for (const order of before) if (kind !== "abort" && order.kind !== "abort") show(order, null);
@@ -117,7 +134,7 @@ export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
   await give(flown, kind, n);
 }
 
-/** Of one craft. A second try under the same id would say nothing new: it is given once, and not at all after a newer order. */
+/** Of one craft, sent once: not again after taking control, if anything was ordered meanwhile. */
 export async function resume(flown: Flown): Promise<void> {
   const { id, craftId } = flown;
   const own: Given = { to: toOf(flown), n: ++presses };
@@ -125,12 +142,13 @@ export async function resume(flown: Flown): Promise<void> {
   report("bar", null);
   try {
     const from = source.peek()!;
+    const crafts = live.peek().status?.value.crafts.filter(({ mission_id }) => mission_id === id) ?? [];
     const reply = await (id !== null
       ? steered(from, id, { kind: "resume", craft_id: craftId }, () => isLast(own))
       : from.order(craftId, { kind: "resume" }));
     if (reply.accepted) {
       // what was ordered before may still be due to the mission's other crafts
-      (live.peek().mission.crafts.size > 1 ? cross : settle)(own);
+      settle(own, id === null || crafts.length < 2);
       return;
     }
     problem = refusal(reply.reason);
@@ -143,18 +161,21 @@ export async function resume(flown: Flown): Promise<void> {
 
 async function give(flown: Flown, kind: Urgent, n: number, isRepeat = false): Promise<void> {
   const { id, craftId } = flown;
-  const own: Order = { flown, kind, n, to: toOf(flown), shown: null };
   const commandId = newCommandId();
+  const own: Order = { flown, kind, n, to: toOf(flown), commandId, pressedMs: Date.now(), shown: null };
+  ownIds.add(commandId);
   underWay.add(own);
   for (let tries = 0; !own.isEnded; ) {
+    const isLate = Date.now() - own.pressedMs > GIVE_UP_MS;
     // an abort may be refused where a hold is not: only another kind is waited for
     if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort")) {
       show(own, null);
+      if (isLate) break;
       await pause(RETRY_MS);
       continue;
     }
-    if (tries === GIVE_UP_AFTER) {
-      settle(own);
+    if (isLate) {
+      (kind === "abort" ? cross : settle)(own);
       break;
     }
     show(own, { stage: tries === 0 ? "sending" : "retrying", count: tries });
@@ -169,14 +190,16 @@ async function give(flown: Flown, kind: Urgent, n: number, isRepeat = false): Pr
         settle(own);
       }
       if (own.isEnded) break;
-      report("bar", reply.accepted || isRepeat ? null : refusal(reply.reason));
+      // a repeated return or landing may be refused as done already
+      report("bar", reply.accepted || (isRepeat && kind !== "hold") ? null : refusal(reply.reason));
       if (!reply.accepted) break;
       if (own.isCrossed && settled.get(own.to) === own) repeat(own);
       show(own, { stage: "accepted", count: tries - 1 });
       await pause(SHOWN_MS);
       break;
     } catch (error) {
-      if (!isRefusal(error)) cross(own);
+      // an abort is tried on: what becomes of it shows then
+      if (kind !== "abort" && !isRefusal(error)) cross(own);
       if (own.isEnded) break;
       report("bar", asProblem(error));
       if (isRefusal(error)) break;
