@@ -88,6 +88,12 @@ def rows(server: Server, screen: Screen) -> tuple[Locator, Locator]:
     return first, second
 
 
+def first_of(page: Page, asked: list[Route]) -> Route:
+    while not asked:
+        page.wait_for_timeout(50)
+    return asked[0]
+
+
 def save(page: Page, row: Locator, notes: str) -> Route:
     """Type notes and save them; the request, which waits."""
     asked: list[Route] = []
@@ -95,9 +101,7 @@ def save(page: Page, row: Locator, notes: str) -> Route:
     row.get_by_test_id("label-mission").click()
     row.get_by_test_id("label-notes").fill(notes)
     row.get_by_test_id("label-save").click()
-    while not asked:
-        page.wait_for_timeout(50)
-    return asked[0]
+    return first_of(page, asked)
 
 
 def test_a_row_that_was_saved_closes_no_other_and_one_that_was_not_says_so(
@@ -152,16 +156,82 @@ def test_two_tabs_keep_each_other_s_settings(screen: Screen) -> None:
     assert (kept["theme"], kept["units"]) == ("indoor", "imperial")
 
 
-def test_a_recording_that_was_left_hides_the_server_s_mission_no_longer(
-    server: Server, screen: Screen, tmp_path: Path
-) -> None:
+@pytest.fixture
+def exported(server: Server, tmp_path: Path) -> tuple[str, Path]:
+    """A mission of the server, and its journal as a file."""
     mission = server.draft()
-    exported = tmp_path / "mission.json"
-    exported.write_bytes(httpx.get(f"{screen.url}/api/missions/{mission}/export/json", timeout=20).content)
-    screen.page.locator("input[type=file][accept*='json']").set_input_files(exported)
+    file = tmp_path / "mission.json"
+    file.write_bytes(httpx.get(f"{server.url}/api/missions/{mission}/export/json", timeout=20).content)
+    return mission, file
+
+
+def choose_recording(screen: Screen, file: Path) -> None:
+    screen.page.locator("input[type=file][accept*='json']").set_input_files(file)
+
+
+def test_a_recording_that_was_left_hides_the_server_s_mission_no_longer(
+    screen: Screen, exported: tuple[str, Path]
+) -> None:
+    mission, file = exported
+    choose_recording(screen, file)
     expect(screen.part("fly")).to_be_visible()
     expect(screen.part("preflight")).to_have_count(0)
     screen.go("#/")
-    expect(screen.part("missions")).to_be_visible()
+    screen.page.locator(f"[data-mission='{mission}']").get_by_test_id("open-mission").click()
+    expect(screen.part("preflight")).to_be_visible()
+
+
+def test_one_comes_back_to_a_recording_of_another_installation(
+    screen: Screen, exported: tuple[str, Path], tmp_path: Path
+) -> None:
+    mission, file = exported
+    elsewhere = tmp_path / "elsewhere.json"
+    elsewhere.write_text(file.read_text().replace(mission, str(uuid4())))
+    choose_recording(screen, elsewhere)
+    expect(screen.part("fly")).to_be_visible()
+    screen.go("#/health")
+    expect(screen.part("fly")).to_have_count(0)
+    screen.page.go_back()
+    expect(screen.part("fly")).to_be_visible()
+    screen.page.wait_for_timeout(1000)
+    expect(screen.part("fly")).to_be_visible()
+    expect(screen.part("mission-gone")).to_have_count(0)
+
+
+def test_a_recording_that_is_read_too_late_hides_nothing(screen: Screen, exported: tuple[str, Path]) -> None:
+    mission, file = exported
+    held: list[Route] = []
+    screen.page.route("**/recordings/read", lambda route: held.append(route))
+    choose_recording(screen, file)
+    late = first_of(screen.page, held)
+    screen.go("#/health")
+    expect(screen.part("missions")).to_have_count(0)
+    with screen.page.expect_response("**/recordings/read"):
+        late.continue_()
+    screen.page.wait_for_timeout(500)
     screen.open(mission)
     expect(screen.part("preflight")).to_be_visible()
+
+
+def test_an_area_that_was_changed_late_does_not_lead_away_from_the_next_page(
+    server: Server, open_screen: OpenScreen
+) -> None:
+    mission = three_emitters(server)
+    screen = open_screen(server)
+    screen.fly(mission)
+    screen.hold()
+    screen.part("change-area").click()
+    screen.part("outlook-ask").click()
+    expect(screen.part("area-slider")).to_be_visible()
+    held: list[Route] = []
+    screen.page.route("**/commands", lambda route: held.append(route), times=1)
+    screen.slide("area-slider")
+    late = first_of(screen.page, held)
+    screen.go("#/new")
+    screen.part("field-name").fill("Typed meanwhile")
+    with screen.page.expect_response("**/commands"):
+        late.continue_()
+    screen.page.wait_for_timeout(1000)
+    expect(screen.part("field-name")).to_have_value("Typed meanwhile")
+    screen.open(mission)
+    screen.part("abort").click()

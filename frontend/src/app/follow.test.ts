@@ -18,16 +18,18 @@ beforeEach(() => {
 });
 afterEach(() => stop());
 
-it("shows the server's mission again once its recording was left", () => {
+it("shows a recording again when one comes back to it from another page", () => {
   const recording = Object.assign(new FakeSource(), { missionId: "m" }) as unknown as ReplaySource;
   replays.set("m", recording);
   route.value = { page: "mission", missionId: "m" };
   expect(source.value).toBe(recording);
   route.value = { page: "bearings", missionId: "m" };
   expect(source.value).toBe(recording);
-  route.value = { page: "missions" };
-  route.value = { page: "mission", missionId: "m" };
+  route.value = { page: "health" };
   expect(source.value).not.toBe(recording);
+  route.value = { page: "mission", missionId: "m" };
+  expect(source.value).toBe(recording);
+  replays.clear();
 });
 
 it("asks the server again for a mission that it had not, when it is looked at another time", () => {

@@ -1,6 +1,5 @@
 // The address says which mission is shown, hence which source speaks: one place decides, whatever page comes or goes.
 import { effect } from "@preact/signals";
-import { replays } from "../sources/replay";
 import { live, source } from "../state/connection";
 import { followed, isGone, noteGone } from "../state/gone";
 import { open } from "../state/open";
@@ -20,7 +19,6 @@ export function followRoute(): () => void {
     const now = source.peek();
     if (shown === wanted) noteGone(null);
     if (now?.missionId === wanted) return;
-    if (now) replays.delete(now.missionId ?? ""); // the next time it is the server's
     open(sourceFor(wanted));
   });
 }

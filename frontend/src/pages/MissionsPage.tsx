@@ -135,10 +135,17 @@ function Row({ mission, editing, onEdit, onChanged }: RowProperties) {
   );
 }
 
+const isHere = () => route.peek().page === "missions";
+
 /** Nobody is led away from a page that they went to meanwhile. */
 function goIfHere(address: string): void {
-  if (route.peek().page === "missions") go(address);
+  if (isHere()) go(address);
 }
+
+/** What the server has, no recording hides any more. */
+const forgetRecordings = (of: readonly Pick<MissionSummary, "mission_id">[]) => {
+  for (const { mission_id } of of) replays.delete(mission_id);
+};
 
 /** The bundle of another installation, as a mission of this one. */
 function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }) {
@@ -148,6 +155,7 @@ function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }
     setShare(0);
     try {
       const brought = await upload<MissionBrought>("/bundles", file, setShare, "application/zip");
+      forgetRecordings([brought]);
       goIfHere(missionAddress(brought.mission_id));
     } catch (error) {
       onProblem(asProblem(error));
@@ -188,8 +196,9 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
           const opened = file.text().then((text) => readRecording(text));
           opened.then(
             (recording) => {
+              if (!isHere()) return;
               replays.set(recording.missionId, recording);
-              goIfHere(missionAddress(recording.missionId));
+              go(missionAddress(recording.missionId));
             },
             (error: unknown) => onProblem(t("missions.recordingBroken", { name: file.name, reason: problemWords(asProblem(error)) })),
           );
@@ -211,6 +220,7 @@ function useLibrary(filter: Filter, changes: number) {
       api.missions(asked, null).then(
         (page) => {
           if (!current) return;
+          forgetRecordings(page.missions);
           setLibrary((before) => withFirstPage(before, named, page));
           setProblem(null);
         },
@@ -226,7 +236,10 @@ function useLibrary(filter: Filter, changes: number) {
   }, [named, changes]);
   const more = (from: Library) =>
     api.missions(JSON.parse(from.named) as Record<string, string>, from.next).then(
-      (page) => setLibrary((now) => (now?.named === from.named ? withNextPage(now, page) : now)),
+      (page) => {
+        forgetRecordings(page.missions);
+        setLibrary((now) => (now?.named === from.named ? withNextPage(now, page) : now));
+      },
       (error: unknown) => setProblem(asProblem(error)),
     );
   return { library, problem, more };
