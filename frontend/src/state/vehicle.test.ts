@@ -1,6 +1,7 @@
 // @vitest-environment happy-dom
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { FakeSource } from "../sources/fakeSource";
+import { localProblem, RequestFailed } from "../sources/problem";
 import type { Hello, TrackFact } from "../wire";
 import { CRAFT, record, someTelemetry, started } from "../wire/examples";
 import { open } from "./open";
@@ -42,4 +43,30 @@ it("keeps what was heard while the track was under way, and asks again for one t
   answer({ mission_id: "m", craft_id: CRAFT, points: [stored] });
   await vi.advanceTimersByTimeAsync(100);
   expect(path.value.map(([lon]) => lon)).toEqual([7.1, 7.2]);
+});
+
+it("asks for a lost track once at a time, not for one that was refused or left", async () => {
+  const source = new FakeSource();
+  const track = vi.spyOn(source, "track").mockRejectedValue(new Error("no link"));
+  open(source);
+  source.tell(hello, { type: "event", recorded: record(started())[0]! }, someTelemetry({ craft_id: CRAFT }));
+  for (let hellos = 0; hellos < 6; hellos++) {
+    source.tell({ ...hello });
+    await vi.advanceTimersByTimeAsync(100);
+  }
+  track.mockClear();
+  await vi.advanceTimersByTimeAsync(20_000);
+  expect(track.mock.calls.length).toBeLessThanOrEqual(4);
+  track.mockClear().mockRejectedValue(new RequestFailed(localProblem("gone", "", 404)));
+  await vi.advanceTimersByTimeAsync(60_000);
+  expect(track).toHaveBeenCalledOnce();
+  track.mockRejectedValue(new Error("no link"));
+  source.tell({ ...hello });
+  await vi.advanceTimersByTimeAsync(1000);
+  const next = new FakeSource("n");
+  const nextTrack = vi.spyOn(next, "track");
+  open(next);
+  next.tell({ ...hello, mission_id: "n" }, { type: "event", recorded: record(started())[0]! }, someTelemetry({ craft_id: CRAFT }));
+  await vi.advanceTimersByTimeAsync(20_000);
+  expect(nextTrack).toHaveBeenCalledOnce();
 });

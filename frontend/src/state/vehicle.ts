@@ -1,5 +1,6 @@
 // The vehicle of the craft shown and its path, at the moment looked at.
 import { batch, computed, effect, signal } from "@preact/signals";
+import { isRefusal } from "../sources/problem";
 import type { Source } from "../sources/source";
 import type { TrackFact } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
@@ -11,16 +12,20 @@ import { unseen, type VehicleView, withoutTremble } from "./vehicleView";
 /** The stored path: what was flown before this page was opened. */
 export const track = signal<readonly TrackFact[]>([]);
 
+/** The number of the last load: what an earlier one brings is not taken. */
 let loads = 0;
 const AGAIN_MS = 5000;
 const again = signal(0);
+let timer: ReturnType<typeof setTimeout> | undefined;
 const NO_PATH: readonly LonLat[] = [];
 
 async function loadTrack(from: Source, missionId: string, craftId: string): Promise<void> {
-  const mine = ++loads;
+  const mine = loads;
   const known = live.peek().paths.get(craftId)?.length;
-  const loaded = await from.track(missionId, craftId).catch(() => void setTimeout(() => again.value++, AGAIN_MS));
-  if (!loaded || mine !== loads || source.peek() !== from || craftFlown.peek() !== craftId) return;
+  const loaded = await from.track(missionId, craftId).catch((error: unknown) => {
+    if (mine === loads && !isRefusal(error)) timer = setTimeout(() => again.value++, AGAIN_MS);
+  });
+  if (!loaded || mine !== loads) return;
   const paths = new Map(live.peek().paths);
   paths.set(craftId, (paths.get(craftId) ?? NO_PATH).slice(known)); // what was heard meanwhile
   batch(() => {
@@ -41,6 +46,8 @@ const reviewing = computed(() => cursor.value !== null);
 const hello = computed(() => live.value.hello);
 effect(() => {
   const [from, craftId] = [source.value, craftFlown.value, reviewing.value, hello.value, again.value];
+  clearTimeout(timer);
+  loads++;
   if (from?.missionId && craftId !== null) void loadTrack(from, from.missionId, craftId);
 });
 
