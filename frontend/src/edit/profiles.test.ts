@@ -1,9 +1,10 @@
 // @vitest-environment happy-dom
-import { expect, it } from "vitest";
+import { expect, it, vi } from "vitest";
 import { someSpec } from "../wire/examples";
 import { textBeside } from "./draft";
 import { set } from "./path";
 import {
+  areStored,
   isSetBy,
   learned,
   learnInto,
@@ -45,6 +46,30 @@ it("keeps what another tab saved meanwhile", () => {
   for (const name of ["heli", "plane", "quad"]) removeProfile(name);
   expect(profiles.value.map((p) => p.name)).toEqual(["rover"]);
   removeProfile("rover");
+});
+
+it("what could not be stored joins what other tabs stored, and is stored with it later", () => {
+  const key = "crossfix.profiles";
+  const names = () => profiles.value.map((p) => p.name);
+  const inStorage = () => readProfiles(localStorage.getItem(key)).map((p) => p.name);
+  saveProfile(profileOf(someSpec(), "quad"));
+  const kept = localStorage.getItem(key);
+  const setItem = () => {
+    throw new DOMException("full");
+  };
+  vi.stubGlobal("localStorage", { getItem: () => kept, setItem });
+  saveProfile(profileOf(someSpec(), "heli"));
+  removeProfile("quad");
+  vi.unstubAllGlobals();
+  expect([names(), areStored.value]).toEqual([["heli"], false]);
+  localStorage.setItem(key, JSON.stringify([...readProfiles(localStorage.getItem(key)), profileOf(someSpec(), "plane")]));
+  dispatchEvent(new StorageEvent("storage", { key: "crossfix.settings" }));
+  expect(names()).toEqual(["heli"]);
+  dispatchEvent(new StorageEvent("storage", { key }));
+  expect(names()).toEqual(["heli", "plane"]);
+  saveProfile(profileOf(someSpec(), "rover"));
+  expect(inStorage()).toEqual(["heli", "plane", "rover"]);
+  for (const name of inStorage()) removeProfile(name);
 });
 
 it("takes the place of what was typed in its own fields only", () => {

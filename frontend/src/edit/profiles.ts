@@ -55,19 +55,30 @@ export function readProfiles(stored: string | null): Profile[] {
 export const areStored = signal(true);
 export const profiles = signal<readonly Profile[]>([]);
 
+/** What was saved and could not be stored, by name; null: removed. */
+const unstored = new Map<string, Profile | null>();
+
 /** Another tab may have saved one meanwhile. */
-const stored = () => (areStored.peek() ? readProfiles(localStorage.getItem(KEY)) : profiles.peek());
+const stored = (): Profile[] =>
+  [
+    ...readProfiles(localStorage.getItem(KEY)).filter((p) => !unstored.has(p.name)),
+    ...[...unstored.values()].filter((p) => p !== null),
+  ].sort((a, b) => a.name.localeCompare(b.name));
 
 export function readAgain(): void {
   profiles.value = stored();
 }
 
 readAgain();
-addEventListener("storage", readAgain);
+addEventListener("storage", ({ key }) => {
+  if (key === KEY || key === null) readAgain(); // null: all was cleared
+});
 
-function store(next: readonly Profile[]): void {
-  profiles.value = next;
-  areStored.value = keep(KEY, next);
+function store(name: string, profile: Profile | null): void {
+  unstored.set(name, profile);
+  readAgain();
+  areStored.value = keep(KEY, profiles.peek());
+  if (areStored.peek()) unstored.clear();
 }
 
 export function profileOf(spec: MissionSpec, name: string): Profile {
@@ -118,11 +129,10 @@ export function takeBack(name: string): void {
 
 /** A profile of the same name is replaced; its history goes on. */
 export function saveProfile(saved: Profile): void {
-  const known = stored();
-  const profile = { ...saved, history: saved.history ?? known.find((p) => p.name === saved.name)?.history ?? [] };
-  store([...known.filter((p) => p.name !== profile.name), profile].toSorted((a, b) => a.name.localeCompare(b.name)));
+  const history = saved.history ?? stored().find((p) => p.name === saved.name)?.history ?? [];
+  store(saved.name, { ...saved, history });
 }
 
 export function removeProfile(name: string): void {
-  store(stored().filter((p) => p.name !== name));
+  store(name, null);
 }
