@@ -6,12 +6,12 @@ import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } fr
 import { add, answered, lastOf, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
 import { keep } from "../state/kept";
 import { me, refreshSession, session } from "../state/session";
+import { TAP_MS } from "../state/tap";
 
 const KEY = "crossfix.bearings";
 const AGAIN_MS = 4000;
 const TWICE_MS = 2000;
 const TWICE_DEG = 2;
-const TAP_MS = 600;
 
 type Told = Omit<BearingReport, "bearing_id" | "taken_at_utc">;
 

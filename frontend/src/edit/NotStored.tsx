@@ -1,6 +1,6 @@
 import { t } from "../i18n";
 
-/** Where what is entered is kept in the browser. */
+/** What is entered is not kept: the browser's storage is full. */
 export const NotStored = () => (
   <p class="field-message" role="alert" data-testid="not-stored">
     {t("edit.notStored")}

@@ -34,7 +34,6 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
   return { ...spec, emitters: spec.emitters.map((one) => ({ ...one, ...own, kind })), sensor: { ...spec.sensor, ...sensor } };
 }
 
-/** Does a preset set the field at the path? */
 export const isOfPreset = (path: string): boolean => /^sensor\.(sigma|measurement|turn)|\.frequency_hz$/.test(path);
 
 /** The preset that the values are still those of, whatever the names are; null when one was changed. */

@@ -5,15 +5,14 @@ import { send } from "../commands/send";
 import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
 import { alertRank, sortAlerts } from "../state/alerts";
 import { liveMission } from "../state/moment";
-import { acknowledgeable, open } from "./AlertsButton";
-
-const UNREAD_MS = 600;
+import { TAP_MS } from "../state/tap";
+import { acknowledgeable, openAlerts } from "./AlertsButton";
 
 /** Pixels that the banner takes from the map's top; 0 without one. The map's tools and its frame keep clear of it. */
 export const bannerPx = signal(0);
 
 export function AlertBanner() {
-  const first = sortAlerts(open.value)[0];
+  const first = sortAlerts(openAlerts.value)[0];
   const shown = first !== undefined && alertRank(first.level) <= alertRank("caution");
   const box = useRef<HTMLDivElement>(null);
   useLayoutEffect(() => {
@@ -32,7 +31,7 @@ export function AlertBanner() {
   const id = liveMission.value.missionId;
   const remedy = reasonRemedy(first.reason);
   const acknowledge = ({ timeStamp }: Event) => {
-    if (timeStamp - since < UNREAD_MS) return; // the tap was for another
+    if (timeStamp - since < TAP_MS) return; // the tap was for another
     void send("alerts", id!, { kind: "acknowledge_alert", alert_id: first.id });
   };
   return (

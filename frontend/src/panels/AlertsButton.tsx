@@ -13,11 +13,11 @@ import { formatAge } from "../units/quantities";
 import { ProblemNote } from "./ProblemNote";
 
 const all = computed(() => [...mission.value.alerts, ...shownCraftAlerts.value]);
-export const open = computed(() => all.value.filter(isOpen));
+export const openAlerts = computed(() => all.value.filter(isOpen));
 /** Of the mission while it lasts: what a craft without one says nobody acknowledges, it goes by itself. */
 export const acknowledgeable = ({ id }: Alert) =>
   cursor.value === null && !mission.value.ended && mission.value.alerts.some((alert) => alert.id === id);
-const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
+const worst = computed(() => sortAlerts(openAlerts.value)[0]?.level ?? null);
 
 function AlertRow({ alert }: { alert: Alert }) {
   const age = Math.max(0, (shownTimeMs.value - Date.parse(alert.raisedAt)) / 1000);
@@ -75,7 +75,7 @@ function AlertsSheet() {
 }
 
 export function AlertsButton() {
-  const count = open.value.length;
+  const count = openAlerts.value.length;
   return (
     <div class="anchor">
       <button

@@ -41,3 +41,16 @@ it("sends again what was refused", async () => {
   await tap(2000);
   expect(send).toHaveBeenCalledTimes(2);
 });
+
+it("sends again what another console undid before it was told", async () => {
+  vi.useFakeTimers();
+  vi.mocked(send).mockResolvedValue(true);
+  show(false);
+  await tap(1000);
+  await tap(3000);
+  expect(send).toHaveBeenCalledOnce();
+  await vi.advanceTimersByTimeAsync(6000);
+  await tap(8000);
+  expect(send).toHaveBeenCalledTimes(2);
+  vi.useRealTimers();
+});

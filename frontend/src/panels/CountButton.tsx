@@ -2,8 +2,10 @@
 import { useEffect, useRef } from "preact/hooks";
 import { send } from "../commands/send";
 import { type MessageKey, t } from "../i18n";
+import { TAP_MS } from "../state/tap";
 
-const TAP_MS = 600;
+/** What was accepted and is not told by then was undone at once by another console. */
+const UNTOLD_MS = 5000;
 
 /** of: the bearing, the sweep of a turn that heard nothing, or the leg. */
 export function CountButton({ id, of, leftOut, words }: { id: string; of: string; leftOut: boolean; words: MessageKey }) {
@@ -19,7 +21,11 @@ export function CountButton({ id, of, leftOut, words }: { id: string; of: string
     if (asked.current || timeStamp - pressedAt.current < TAP_MS) return; // a thumb's second tap would be refused, or undo it
     pressedAt.current = timeStamp;
     asked.current = true;
-    if (!(await send("sweep", id, order))) asked.current = false;
+    const again = () => {
+      if (pressedAt.current === timeStamp) asked.current = false;
+    };
+    if (await send("sweep", id, order)) setTimeout(again, UNTOLD_MS);
+    else again();
   };
   return (
     <button type="button" class="small" data-testid={leftOut ? "include" : "exclude"} onClick={press}>
