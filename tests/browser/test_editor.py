@@ -47,7 +47,8 @@ def test_a_polygon_that_is_not_closed_is_not_forgotten(editor: Screen) -> None:
     editor.part("save").click()
     expect(editor.part("edit-problem")).to_contain_text("press Enter to finish")
     expect(editor.part("area-size")).to_have_attribute("data-suggested", "true")
-    editor.page.mouse.click(*editor.map_point(0.3, 0.3, "edit-map"))
+    expect(editor.page.locator("canvas:focus")).to_be_visible()
+    editor.page.keyboard.press("Enter")
     expect(editor.part("area-size")).to_have_attribute("data-suggested", "false")
 
 
@@ -153,6 +154,9 @@ def test_a_new_area_in_flight_is_not_asked_of_while_it_is_being_drawn(server: Se
     screen.part("outlook-ask").click()
     expect(screen.part("area-problem")).to_contain_text("press Enter to finish")
     expect(screen.part("outlook")).to_have_count(0)
+    expect(screen.page.locator("canvas:focus")).to_be_visible()
+    screen.page.keyboard.press("Enter")
+    expect(screen.part("draw-polygon")).to_have_attribute("aria-pressed", "false")
 
 
 def test_a_file_being_read_for_another_mission_does_not_keep_this_one_from_being_saved(

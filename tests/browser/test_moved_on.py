@@ -195,7 +195,7 @@ def test_one_comes_back_to_a_recording_of_another_installation(
     expect(screen.part("fly")).to_be_visible()
     screen.page.wait_for_timeout(1000)
     expect(screen.part("fly")).to_be_visible()
-    expect(screen.part("mission-gone")).to_have_count(0)
+    expect(screen.part("no-mission")).to_have_count(0)
 
 
 def test_a_recording_that_is_read_too_late_hides_nothing(screen: Screen, exported: tuple[str, Path]) -> None:

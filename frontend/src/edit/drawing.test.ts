@@ -74,6 +74,34 @@ it("is not settled while something is being drawn", async () => {
   await turn();
 });
 
+it("gives the map the keys while something is being drawn, unless one has gone elsewhere", async () => {
+  vi.useFakeTimers();
+  document.body.innerHTML = '<div class="map-area"><canvas tabindex="0"></canvas></div><button></button><input />';
+  const [canvas, button, input] = ["canvas", "button", "input"].map((name) => document.querySelector<HTMLElement>(name)!);
+  begin("new");
+  tool.value = "polygon";
+  button!.focus();
+  await expect(settledDraft()).rejects.toThrow();
+  expect(document.activeElement, "the Enter that is still pressed").toBe(button);
+  await vi.advanceTimersByTimeAsync(1000);
+  expect(document.activeElement).toBe(canvas);
+  button!.focus();
+  await expect(settledDraft()).rejects.toThrow();
+  input!.focus();
+  await vi.advanceTimersByTimeAsync(1000);
+  expect(document.activeElement).toBe(input);
+  document.body.innerHTML = "";
+  vi.useRealTimers();
+});
+
+it("discards no draft but the one that is meant", () => {
+  begin("area:1");
+  begin("new");
+  discard("area:1");
+  expect(draft.value?.key).toBe("new");
+  expect(storedDraft("area:1")).toBeNull();
+});
+
 it("what is replaced takes the text of its fields with it, and no other", () => {
   begin("new", { "planner.motion.speed_m_s": "1x", "planner.seed": "?" });
   change("planner.motion", { kind: "linear", speed_m_s: 7 });

@@ -4,6 +4,7 @@ import { t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem, RequestFailed } from "../sources/problem";
 import { areaOf, polygonsOf, type Rings } from "../state/areas";
+import { TAP_MS } from "../state/tap";
 import type { Area } from "../wire";
 import { type Draft, draft, forget, update } from "./draft";
 import { set } from "./path";
@@ -32,7 +33,7 @@ async function unite(): Promise<void> {
 
 /** A file that is being read, or parts that become one. */
 interface Work {
-  /** Of its draft; undefined: of the one that comes. */
+  /** Of the draft that it is for; undefined: there was none yet, it is for the next one. */
   key: string | undefined;
   done: Promise<unknown>;
 }
@@ -61,12 +62,20 @@ export function addRead<T>(reading: Promise<T>, put: (found: T) => void): Promis
 export function discard(key: string): void {
   for (const work of settling) if (work.key === key) settling.delete(work);
   forget(key);
-  draft.value = null;
+  if (draft.peek()?.key === key) draft.value = null;
 }
 
 /** What is put in or taken out while corners are moved would be undone by the next one that moves. */
 function endMoving(): void {
   if (tool.peek() === "corners") tool.value = "none";
+}
+
+/** The Enter that finishes a drawing is the map's; not the one that is still pressed, nor of somebody who went elsewhere. */
+function focusMap(): void {
+  const before = document.activeElement;
+  setTimeout(() => {
+    if (document.activeElement === before) document.querySelector<HTMLElement>(".map-area canvas")?.focus();
+  }, TAP_MS);
 }
 
 /** The draft, once corners are no longer moved, files are read and parts that overlap have become one. Fails as a reading,
@@ -81,7 +90,10 @@ export async function settledDraft(): Promise<Draft | null> {
       if (isHere()) throw error;
     });
   if (!isHere()) return null;
-  if (tool.peek() !== "none") throw new RequestFailed(localProblem(t("edit.area"), t("edit.area.drawing")));
+  if (tool.peek() !== "none") {
+    focusMap();
+    throw new RequestFailed(localProblem(t("edit.area"), t("edit.area.drawing")));
+  }
   return draft.peek();
 }
 

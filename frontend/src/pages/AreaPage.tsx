@@ -4,14 +4,15 @@ import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
-import { draft, isUnread, storedDraft, update } from "../edit/draft";
+import { draft, isStored, isUnread, storedDraft, update } from "../edit/draft";
 import { discard, replaces, settledDraft, tool } from "../edit/drawing";
+import { NotStored } from "../edit/NotStored";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
 import { ProblemBox, ProblemNote } from "../panels/ProblemNote";
 import * as api from "../sources/api";
-import { go, missionAddress, type Route } from "../state/route";
+import { go, missionAddress, type Route, route } from "../state/route";
 import { mission } from "../state/shown";
 import type { MissionSpec, Problem } from "../wire";
 import { EditMapArea } from "./EditMapArea";
@@ -47,11 +48,12 @@ function Changed({ id }: { id: string }) {
     return () => {
       for (const stop of stops) stop();
     };
-  }, [key]);
+  }, []);
 
   const leave = () => {
     discard(key);
-    go(missionAddress(id));
+    const now = route.peek();
+    if (now.page === "area" && now.missionId === id) go(missionAddress(id));
   };
   const ask = () => {
     setProblem(null);
@@ -62,6 +64,7 @@ function Changed({ id }: { id: string }) {
   };
   const judged = outlook.value;
   const isAsking = judged !== null && !judged.found && !judged.problem;
+  const isHere = draft.value?.key === key;
   const isReadable = draft.value?.hasArea && !isUnread(draft.value);
   const held = mission.value.phase === "hold" && mission.value.ended === null;
   return (
@@ -73,9 +76,10 @@ function Changed({ id }: { id: string }) {
         </div>
         <div class="edit-scroll">
           <p class="panel">{t("area.what")}</p>
-          {draft.value?.key === key && <AreaSection failed={judged?.failed ?? null} told={told} onTold={setTold} />}
+          {isHere && <AreaSection failed={judged?.failed ?? null} told={told} onTold={setTold} />}
         </div>
         <div class="panel edit-foot">
+          {isHere && !isStored.value && <NotStored />}
           {problem && <ProblemBox problem={problem} testId="area-problem" />}
           {judged && <OutlookCard judged={judged} />}
           {!held && (
