@@ -206,7 +206,7 @@ def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float
 def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -> AntennaPattern:
     rows: list[Row] = []
     header: Row | None = None
-    for number, line in enumerate(lines_of(text), start=1):
+    for number, line in lines_of(text):
         bare = line.split("#")[0].strip()
         try:
             cells, named = _turntable_cells(bare), cells_of(bare or " ")

@@ -37,7 +37,7 @@ _BEGINS_AS_NUMBER = re.compile(r"[NSEW]? ?[+\-\u2212]?\.?\d")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _SEPARATOR_TOLD = re.compile(r"\"?sep=.\"?", re.IGNORECASE)
 """First line of what Excel writes; which one it is shows in the others."""
-_LINE_ENDS = re.compile(r"\r\n|\r|\n")
+_LINES = re.compile(r"[^\r\n]+")
 _MINUS = str.maketrans("\u2212\u2013", "--")
 """As typesetters write it."""
 
@@ -134,7 +134,7 @@ def read_table(path: Path | str) -> Table:
         raise RecordingError(FileUnusable(str(path), "not_text"))
     rows: list[Row] = []
     comments: list[Row] = []
-    for number, line in enumerate(lines_of(text), start=1):
+    for number, line in lines_of(text):
         stripped = line.rstrip().strip(" ") if "\t" in line.strip() else line.strip()
         try:
             if line.lstrip().startswith(("#", "%")):
@@ -189,13 +189,15 @@ def decoded(raw: bytes) -> str:
         return raw.decode("latin-1")
 
 
-def lines_of(text: str) -> Iterator[str]:
-    """As editors end them: a letter of some old code page that `str.splitlines` takes for an end is none."""
-    begin = 0
-    for end in _LINE_ENDS.finditer(text):
-        yield text[begin : end.start()]
-        begin = end.end()
-    yield text[begin:]
+def lines_of(text: str) -> Iterator[tuple[int, str]]:
+    """Those that are not empty, by their numbers from 1 on. They end as editors end them: a letter of some old code
+    page that `str.splitlines` takes for an end is none."""
+    number, read = 1, 0
+    for line in _LINES.finditer(text):
+        ends = text[read : line.start()]
+        number += ends.count("\n") + ends.count("\r") - ends.count("\r\n")
+        read = line.end()
+        yield number, line.group()
 
 
 def number_of(cell: str) -> float | None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from refusals import refusing
 
 from hardware.direction_finding.pattern_file import load_pattern
 from hardware.direction_finding.recordings import read_recording
-from hardware.direction_finding.table_file import RecordingError, read_table
+from hardware.direction_finding.table_file import RecordingError, lines_of, read_table
 from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnusable, NothingUsable, Quantity
 
 TURN = "heading_deg,power_db\n" + "\n".join(f"{heading},{-60 - heading / 20}" for heading in range(0, 360, 10))
@@ -116,3 +118,9 @@ def test_a_time_may_have_a_decimal_comma_between_semicolons(time: str, tmp_path:
     path.write_text(f"Zeit;Richtung;Pegel\n{time};12,5;-70,5\n")
     (recorded,) = read_recording(path).sweeps
     assert (recorded.sweep.heading_deg.tolist(), recorded.sweep.power_db.tolist()) == ([12.5], [-70.5])
+
+
+@given(st.text(alphabet="\r\na ,\x85\u2028", max_size=12))
+def test_lines_have_the_numbers_that_an_editor_shows(text: str) -> None:
+    shown = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    assert [*lines_of(text)] == [(number, line) for number, line in enumerate(shown, start=1) if line]
