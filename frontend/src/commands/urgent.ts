@@ -5,6 +5,7 @@ import { newCommandId } from "../sources/api";
 import { isRefusal, refusal } from "../sources/problem";
 import { live, source } from "../state/connection";
 import type { Flown } from "../state/flying";
+import { TAP_MS } from "../state/tap";
 import type { Problem } from "../wire";
 import { asProblem, report, steered } from "./send";
 
@@ -25,7 +26,6 @@ const RETRY_MS = 700;
 /** By then the server sends a vehicle home whose consoles are gone; later an order would act on one that its giver no longer sees. */
 const GIVE_UP_MS = 60_000;
 const SHOWN_MS = 4000;
-const TAP_MS = 600;
 const STEERING: readonly string[] = ["hold", "return", "land", "resume", "abort"];
 
 /** An urgent order, or a resume. */
