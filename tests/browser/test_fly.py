@@ -189,7 +189,7 @@ def it_counts_against_a_resume_that_comes_late(server: Server, screen: Screen, m
     late = list[Route]()
 
     def delay(route: Route) -> None:
-        if route.request.post_data_json["command"]["kind"] == "resume":
+        if (route.request.post_data_json or {})["command"]["kind"] == "resume":
             late.append(route)
         else:
             route.continue_()
