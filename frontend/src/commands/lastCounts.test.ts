@@ -21,7 +21,7 @@ type Answer = Fate | number;
 
 const later = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** A server that carries out each command id once, behind a link that treats the first try of each kind as is told. */
+/** A server that carries out each command id once, behind a link that treats the first try of each kind as it was asked to. */
 class Served extends FakeSource {
   readonly done: string[] = [];
   private readonly known = new Map<string, CommandReply>();
