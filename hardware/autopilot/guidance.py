@@ -42,16 +42,9 @@ class Guidance:
         self.monitor.commander.check(manoeuvre)
         return manoeuvre
 
-    async def send(
-        self,
-        manoeuvre: Manoeuvre,
-        outgoing: Outgoing,
-        modes: frozenset[int],
-        command: CommandName,
-        again: Callable[[], Outgoing] | None = None,
-    ) -> None:
+    async def send(self, manoeuvre: Manoeuvre, outgoing: Outgoing, modes: frozenset[int], command: CommandName) -> None:
         """See Commander.send."""
-        await self.monitor.commander.send(manoeuvre, outgoing, modes, command, again)
+        await self.monitor.commander.send(manoeuvre, outgoing, modes, command)
 
     async def enter_steering(self, manoeuvre: Manoeuvre) -> None:
         """The mode in which the vehicle flies to places and turns as told, selected only when it is in another."""

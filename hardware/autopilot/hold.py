@@ -102,8 +102,9 @@ async def _keep_nose(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
 
 async def _said(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Callable[[], Outgoing]) -> None:
     """Sent to a vehicle that holds. Refused or unanswered, it holds all the same, only less quietly."""
+    monitor = guidance.monitor
     try:
-        await guidance.send(manoeuvre, outgoing(), guidance.monitor.dialect.hold_modes, "hold", again=outgoing)
+        await monitor.commander.send(manoeuvre, outgoing(), monitor.dialect.hold_modes, "hold", again=outgoing)
     except (NotInControl, ManoeuvreSuperseded):
         raise
     except VehicleError:

@@ -118,7 +118,7 @@ it("goes on from another's order that came after its own, however both were told
   expect(sent).toHaveBeenLastCalledWith("order", expect.any(String), { kind: "set_priorities", priorities: { b: 1, c: 2 } });
 });
 
-it("goes on from its second step while the first is told", async () => {
+it("builds on its second step while the event of the first arrives", async () => {
   show();
   press("order");
   press("sooner-c");

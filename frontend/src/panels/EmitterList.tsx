@@ -55,7 +55,7 @@ export function EmitterList() {
   const { spec, emitterId, missionId, plan, startedAt, ended } = mission.value;
   const told = spec?.emitters ?? [];
   const [sent, setSent] = useState<Sent | null>(null);
-  // the next press goes on from what was sent, until that is told: what is told after it is another's order
+  // the next press builds on what was sent until the journal has it; what comes after that is another's order
   const emitters = sent && !isTold(told, sent) ? inOrder(told, sent.priorities) : told;
   const order = async (id: string, priorities: Priorities) => {
     const now = { priorities, after: events.peek().at(-1)?.seq ?? 0 };
