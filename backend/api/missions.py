@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from datetime import UTC, datetime
 from typing import Annotated
+from uuid import UUID
 
 from fastapi import APIRouter, Query, Request
 
@@ -104,10 +105,14 @@ def _place(after: str) -> PlaceInList:
 
 
 @router.post("", status_code=201)
-async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
-    """Draft a mission. The errors of bearings are estimated with the place unless the request says otherwise."""
+async def create_mission(
+    spec: MissionSpec, services: ServicesDep, principal: PrincipalDep, mission_id: UUID | None = None
+) -> Mission:
+    """Draft a mission. The errors of bearings are estimated with the place unless the request says otherwise.
+    mission_id: chosen by who asks, who may then ask again when no answer came: 409 where it was drafted."""
     spec = with_errors_estimated(spec)
-    return await _mission(services, await services.missions.drafts.create(spec, principal.name))
+    wanted = None if mission_id is None else str(mission_id)
+    return await _mission(services, await services.missions.drafts.create(spec, principal.name, wanted))
 
 
 @router.get("/{mission_id}")
@@ -118,10 +123,15 @@ async def get_mission(mission_id: MissionId, services: ServicesDep) -> Mission:
 
 @router.put("/{mission_id}/spec")
 async def edit_mission(
-    mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
+    mission_id: MissionId,
+    spec: MissionSpec,
+    services: ServicesDep,
+    principal: PrincipalDep,
+    from_seq: Annotated[int | None, Query(ge=1)] = None,
 ) -> Mission:
-    """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.drafts.edit(mission_id, with_errors_estimated(spec), principal.name)
+    """Replace the specification of a draft; 409 once the mission has started. from_seq: `spec_seq` of what was edited,
+    409 when somebody has saved another one since; without it theirs is replaced unseen."""
+    await services.missions.drafts.edit(mission_id, with_errors_estimated(spec), principal.name, from_seq)
     return await _mission(services, mission_id)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.events import Recorded
+from backend.mission.drafts import SPECIFIED
 from backend.ports import TrackPoint
 from backend.search.emitter import EmitterState
 from backend.search.state import SearchState, evolve
@@ -20,8 +21,7 @@ from backend.wire.resources import EmitterFound, Mission, MissionSummary, SweepR
 from planner.reasons import NoBearingYet
 
 DETAIL_KINDS = (
-    "mission_drafted",
-    "mission_edited",
+    *SPECIFIED,
     "area_changed",
     "priorities_changed",
     "preflight_checked",
@@ -75,10 +75,12 @@ def mission(digest: MissionDigest, iq_bytes: int, recorded: Sequence[Recorded]) 
     search = SearchState()
     for record in recorded:
         search = evolve(search, record.event, record.at_utc.timestamp())
+    specified = [record.seq for record in recorded if record.event.kind in SPECIFIED]
     return Mission.model_validate(
         {
             **_summary(digest, iq_bytes),
             "spec": search.mission,
+            "spec_seq": specified[-1],
             "editable": search.stage in ("draft", "ready"),
             "home": search.home,
             "localized": all(e.belief is not None and e.belief.localized for e in search.emitters.values()),

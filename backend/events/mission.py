@@ -43,10 +43,12 @@ class MissionDrafted(Fact):
 
 
 class MissionEdited(Fact):
-    """The whole specification, before the start only; a checklist that passed counts no more."""
+    """The whole specification, before the start only; a checklist that passed counts no more. by: None in journals of
+    before it was kept."""
 
     kind: Literal["mission_edited"] = "mission_edited"
     spec: StoredSpec
+    by: str | None = None
 
 
 class AreaChanged(Fact):

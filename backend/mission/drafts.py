@@ -9,13 +9,20 @@ from uuid import uuid4
 
 from backend.craft.antenna_check import check_by_hand
 from backend.craft.checklist import checklist
-from backend.events import AntennaChecked, BeliefUpdated, MissionDrafted, PreflightChecked, Recorded
+from backend.events import AntennaChecked, BeliefUpdated, MissionDrafted, MissionEdited, PreflightChecked, Recorded
 from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
 from backend.mission.learning import learn_from_check
 from backend.mission.records import Records
 from backend.names import in_one_line, seen
-from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable, WasDeleted
+from backend.reasons.refusals import (
+    AlreadyStarted,
+    DraftedBefore,
+    EditedMeanwhile,
+    MissionFlies,
+    NotEditable,
+    WasDeleted,
+)
 from backend.reasons.request import FieldInvalid
 from backend.search.area import centre_of
 from backend.search.band import check_band
@@ -30,6 +37,9 @@ from backend.spec import MissionSpec, Place
 
 log = logging.getLogger("crossfix.mission")
 
+SPECIFIED = ("mission_drafted", "mission_edited")
+"""The facts that hold a whole specification."""
+
 
 @dataclass(slots=True)
 class Drafts:
@@ -39,17 +49,22 @@ class Drafts:
     records: Records
     flights: Flights
 
-    async def create(self, spec: MissionSpec, by: str) -> str:
-        """Draft a mission. Raises MissionInputError when the specification makes no sense."""
+    async def create(self, spec: MissionSpec, by: str, mission_id: str | None = None) -> str:
+        """Draft a mission. mission_id: the caller's own, so that a request whose answer was lost drafts nothing twice.
+        Raises MissionInputError when the specification makes no sense, MissionConflict when the id is taken."""
         spec = await self.equipment.knowing(spec)
         await asyncio.to_thread(_check_spec, spec)
-        mission_id = str(uuid4())
-        await self.records.append(mission_id, [MissionDrafted(spec=spec)])
+        mission_id = mission_id or str(uuid4())
+        async with self.records.lock(mission_id):
+            if await self.equipment.journal.listed(mission_id) is not None:
+                raise MissionConflict(DraftedBefore(mission_id))
+            await self.records.append(mission_id, [MissionDrafted(spec=spec)])
         log.info("mission %s drafted by %s", mission_id, by)
         return mission_id
 
-    async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
-        """Raises MissionNotFound, MissionConflict once it has started or was deleted, MissionInputError."""
+    async def edit(self, mission_id: str, spec: MissionSpec, by: str, from_seq: int | None = None) -> None:
+        """from_seq: of the specification that was opened; what is stored already is not stored again. Raises
+        MissionNotFound, MissionConflict once it has started, was deleted, or was edited since, MissionInputError."""
         spec = await self.equipment.knowing(spec)
         await asyncio.to_thread(_check_spec, spec)
         async with self.records.lock(mission_id):
@@ -58,7 +73,14 @@ class Drafts:
                 raise MissionConflict(WasDeleted())
             if state.search.stage not in ("draft", "ready"):
                 raise MissionConflict(NotEditable())
-            await self.records.give(mission_id, state, Edited(spec))
+            if from_seq is not None:
+                if spec == state.search.mission:
+                    return
+                last = (await self.records.of_kinds(mission_id, SPECIFIED))[-1]
+                if last.seq != from_seq:
+                    who = last.event.by if isinstance(last.event, MissionEdited) else None
+                    raise MissionConflict(EditedMeanwhile(who or "?", last.seq))
+            await self.records.give(mission_id, state, Edited(spec, by))
             await self.records.settle_beliefs(mission_id)
         log.info("mission %s edited by %s", mission_id, by)
 

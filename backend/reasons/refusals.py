@@ -195,6 +195,28 @@ class NotEditable:
 
 
 @dataclass(frozen=True, slots=True)
+class EditedMeanwhile:
+    """by: who saved it last, "?" when that was not kept. seq: of the fact that did."""
+
+    by: str
+    seq: int
+    code: Literal["edited_meanwhile"] = "edited_meanwhile"
+    english: ClassVar[Words] = Words(
+        "The mission has been saved since you opened it, by {by}.",
+        "Look at what they saved; then save yours over it, or begin again from theirs.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DraftedBefore:
+    """A mission of the id that the request names is stored."""
+
+    mission_id: str
+    code: Literal["drafted_before"] = "drafted_before"
+    english: ClassVar[Words] = Words("The mission {mission_id} was drafted before.", "Open it and edit it.")
+
+
+@dataclass(frozen=True, slots=True)
 class MissionFlies:
     """The antenna is checked on the ground only."""
 
@@ -267,6 +289,8 @@ RefusalReason = (
     | AnotherMissionFlies
     | NoMission
     | NotEditable
+    | EditedMeanwhile
+    | DraftedBefore
     | MissionFlies
     | MissionDoesNotFly
     | ServerIsEnding

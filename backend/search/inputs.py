@@ -15,6 +15,7 @@ class Edited:
     """The whole specification, not what changed of it."""
 
     spec: MissionSpec
+    by: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,9 +86,9 @@ def transition(state: SearchState, given: SearchInput, at_s: float) -> tuple[Sea
 def _take(step: SearchStep, given: SearchInput) -> None:
     state = step.state
     match given:
-        case Edited(spec=spec):
+        case Edited(spec=spec, by=by):
             if state.stage in ("draft", "ready"):
-                step.record(MissionEdited(spec=spec))
+                step.record(MissionEdited(spec=spec, by=by))
                 update_stale_beliefs(step, only_with_bearings=True)
         case PreflightDone(checks=checks):
             if state.stage != "ended":

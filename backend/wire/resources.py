@@ -100,9 +100,11 @@ class EmitterFound(Model):
 
 
 class Mission(MissionSummary):
-    """`editable`: the specification may still be replaced. `found`: in the order of the specification's emitters."""
+    """`editable`: the specification may still be replaced; `spec_seq`: of the fact that set it, which an edit begins
+    from. `found`: in the order of the specification's emitters."""
 
     spec: MissionSpec
+    spec_seq: int
     editable: bool
     home: Place | None
     localized: bool

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import Route, expect
-from screen import Screen
+from screen import OpenScreen, Screen
 from served import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
@@ -262,3 +262,60 @@ def test_what_is_typed_into_a_full_browser_stays_and_that_is_said(editor: Screen
     altitude.blur()
     expect(altitude).to_have_value("33")
     expect(editor.part("not-stored")).to_be_visible()
+
+
+def test_what_another_has_saved_meanwhile_is_not_replaced_unseen(
+    server: Server, screen: Screen, open_screen: OpenScreen
+) -> None:
+    mission = server.draft()
+    other = open_screen(server)
+    for each, name in ((screen, "Mine"), (other, "Theirs")):
+        each.go(f"#/mission/{mission}/edit")
+        each.part("field-name").fill(name)
+    other.part("save").click()
+    expect(other.part("preflight")).to_be_visible()
+    screen.part("save").click()
+    expect(screen.part("edit-problem")).to_contain_text("saved since you opened it, by operator")
+    assert server.get(f"/api/missions/{mission}")["name"] == "Theirs"
+    screen.part("save").click()
+    expect(screen.part("save-over")).to_be_enabled()
+    screen.page.reload()
+    expect(screen.part("field-name")).to_have_value("Mine")
+    screen.part("save").click()
+    screen.part("save-over").click()
+    assert spec_of(server, screen)["name"] == "Mine"
+
+    other.go(f"#/mission/{mission}/edit")
+    expect(other.part("field-name")).to_have_value("Mine")
+    other.part("field-name").fill("Theirs again")
+    screen.go(f"#/mission/{mission}/edit")
+    screen.part("field-name").fill("Mine again")
+    other.part("save").click()
+    expect(other.part("preflight")).to_be_visible()
+    screen.part("save").click()
+    screen.part("take-theirs").click()
+    expect(screen.part("field-name")).to_have_value("Theirs again")
+    screen.part("field-name").fill("Both")
+    screen.part("save").click()
+    assert spec_of(server, screen)["name"] == "Both"
+
+
+def test_a_draft_whose_answer_is_lost_is_saved_once(server: Server, editor: Screen) -> None:
+    def lose(route: Route) -> None:
+        if route.request.method == "POST":
+            route.fetch()
+            route.abort()
+        else:
+            route.continue_()
+
+    editor.page.route("**/api/missions?mission_id=*", lose, times=1)
+    editor.part("field-name").fill("Lost")
+    editor.part("save").click()
+    expect(editor.part("edit-problem")).to_be_visible()
+    assert [m["name"] for m in server.get("/api/missions?named=Lost")["missions"]] == ["Lost"]
+    editor.page.reload()
+    editor.map_ready("edit-map")
+    editor.part("field-name").fill("Lost and found")
+    editor.part("save").click()
+    assert spec_of(server, editor)["name"] == "Lost and found"
+    assert [m["name"] for m in server.get("/api/missions?named=Lost")["missions"]] == ["Lost and found"]

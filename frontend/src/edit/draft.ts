@@ -8,6 +8,8 @@ export interface Draft {
   /** "new", "new:ID" of a mission that is used again, or the id of the one that is edited. */
   key: string;
   spec: MissionSpec;
+  /** Of the stored specification that it began from; none: nothing is stored yet. */
+  fromSeq?: number;
   hasArea: boolean;
   /** The area is the server's suggestion: the first one drawn takes its place. */
   suggested: boolean;

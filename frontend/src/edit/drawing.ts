@@ -8,6 +8,7 @@ import { TAP_MS } from "../state/tap";
 import type { Area } from "../wire";
 import { type Draft, draft, forget, update } from "./draft";
 import { set } from "./path";
+import { forgetSaving } from "./saving";
 
 export type What = "area" | "fence" | "noFly";
 export type Tool = "none" | "polygon" | "rectangle" | "corners";
@@ -62,6 +63,7 @@ export function addRead<T>(reading: Promise<T>, put: (found: T) => void): Promis
 export function discard(key: string): void {
   for (const work of settling) if (work.key === key) settling.delete(work);
   forget(key);
+  forgetSaving(key);
   if (draft.peek()?.key === key) draft.value = null;
 }
 

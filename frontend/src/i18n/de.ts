@@ -683,6 +683,8 @@ export const de: Record<MessageKey, string> = {
   "edit.cancel": "Zurück",
   "edit.restored": "Was Sie zuvor eingegeben haben, ist noch da.",
   "edit.discard": "Von vorn",
+  "edit.saveOver": "Meine Fassung darüber speichern",
+  "edit.takeTheirs": "Meine verwerfen, andere ändern",
   "edit.invalid": "Bitte berichtigen, was unten markiert ist.",
   "edit.notStored": "Der Speicher dieses Browsers ist voll: Was hier steht, geht beim Verlassen der Seite verloren.",
   "edit.section.name": "Was gesucht wird",

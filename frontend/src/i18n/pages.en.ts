@@ -261,6 +261,8 @@ export const pagesEn = {
   "edit.cancel": "Back",
   "edit.restored": "What you typed before is still here.",
   "edit.discard": "Start over",
+  "edit.saveOver": "Save mine over it",
+  "edit.takeTheirs": "Drop mine, edit theirs",
   "edit.invalid": "Please correct what is marked below.",
   "edit.notStored": "This browser's storage is full: what is entered here is lost when you leave.",
   "edit.section.name": "What is looked for",

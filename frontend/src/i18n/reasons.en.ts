@@ -849,6 +849,11 @@ export const reasonsEn: ReasonTable = {
   another_mission_flies: ["Another mission is still flying: {name}.", "End it and let the vehicle land first."],
   no_mission: ["There is no mission {mission_id}.", "Look at the list of missions."],
   not_editable: ["The mission has started and can no longer be edited.", "In hold, change its search area; or draft a new mission."],
+  edited_meanwhile: [
+    "The mission has been saved since you opened it, by {by}.",
+    "Look at what they saved; then save yours over it, or begin again from theirs.",
+  ],
+  drafted_before: ["The mission {mission_id} was drafted before.", "Open it and edit it."],
   mission_flies: ["A mission is flying.", "Check the antenna when the vehicle is down."],
   mission_does_not_fly: ["The mission is not flying.", "Edit the draft, or draft a new mission."],
   server_is_ending: ["The server is being ended: it only holds, returns and lands.", "Start it again first."],

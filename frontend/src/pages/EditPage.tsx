@@ -5,7 +5,7 @@ import { suggestedSpec } from "../commands/suggested";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
-import { change, draft, forgetSent, isStored, isUnread, storedDraft, textBeside, update } from "../edit/draft";
+import { change, type Draft, draft, forgetSent, isStored, isUnread, storedDraft, textBeside, update } from "../edit/draft";
 import { discard, settledDraft, tool } from "../edit/drawing";
 import { EmitterListField } from "../edit/EmitterListField";
 import { EMITTER, firstEmitter } from "../edit/emitter";
@@ -20,6 +20,7 @@ import { isOfPreset, type PresetName, presetNames, presetOf, withPreset } from "
 import { clearPreview, forgetPreviewOfOthers } from "../edit/preview";
 import { ReceiverBandField } from "../edit/ReceiverBandField";
 import { RhythmFields } from "../edit/RhythmFields";
+import { draftOnce, forgetSaving, savedMeanwhile } from "../edit/saving";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
@@ -32,8 +33,11 @@ type EditRoute = Extract<Route, { page: "new" | "edit" }>;
 
 const keyOf = (route: EditRoute) => (route.page === "edit" ? route.missionId : route.from ? `new:${route.from}` : "new");
 
-async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested: boolean }> {
-  if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, suggested: false };
+async function specFor(route: EditRoute): Promise<Pick<Draft, "spec" | "suggested" | "fromSeq">> {
+  if (route.page === "edit") {
+    const { spec, spec_seq: fromSeq } = await api.mission(route.missionId);
+    return { spec: spec as MissionSpec, suggested: false, fromSeq };
+  }
   if (route.from !== null) return { spec: (await api.mission(route.from)).spec as MissionSpec, suggested: false };
   return { spec: await suggestedSpec(), suggested: true };
 }
@@ -200,8 +204,8 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
     else {
       draft.value = null; // what is typed until it has come would be lost
       specFor(route).then(
-        ({ spec, suggested }) => {
-          if (!isLeft.current) draft.value = { key, spec, hasArea: true, suggested, text: {} }; // kept from the first change on
+        (begun) => {
+          if (!isLeft.current) draft.value = { key, ...begun, hasArea: true, text: {} }; // kept from the first change on
         },
         (error: unknown) => setFailed(asFailure(error)),
       );
@@ -216,7 +220,7 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
     };
   }, []);
 
-  const save = async () => {
+  const save = async (over?: number) => {
     (document.activeElement as HTMLElement | null)?.blur(); // what is typed there is taken, or marked
     setFailed(null);
     setSaving(true);
@@ -225,8 +229,10 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
       if (!now || isLeft.current) return;
       const local = !now.hasArea ? t("edit.noArea") : isUnread(now) ? t("edit.invalid") : null;
       if (local) throw new RequestFailed(localProblem(t("menu.new"), local));
-      const saved = route.page === "edit" ? await api.editMission(route.missionId, now.spec) : await api.draftMission(now.spec);
+      const saved =
+        route.page === "edit" ? await api.editMission(route.missionId, now.spec, over ?? now.fromSeq) : await draftOnce(key, now.spec);
       forgetSent(key, now.spec);
+      forgetSaving(key);
       if (!isLeft.current) go(missionAddress(saved.mission_id));
     } catch (error) {
       setFailed(asFailure(error));
@@ -236,6 +242,7 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
   };
 
   const now = draft.value?.key === key ? draft.value : null;
+  const theirs = failed && savedMeanwhile(failed);
   useEffect(openMarked, [failed, !now]);
   return (
     <div class="edit" data-testid="edit-page" inert={saving}>
@@ -272,6 +279,16 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
         <div class="panel edit-foot">
           {now && !isStored.value && <NotStored />}
           {failed && <ProblemBox problem={failed.problem} testId="edit-problem" />}
+          {theirs !== null && (
+            <div class="start-row">
+              <button type="button" data-testid="save-over" onClick={() => save(theirs)}>
+                {t("edit.saveOver")}
+              </button>
+              <button type="button" data-testid="take-theirs" onClick={onDiscard}>
+                {t("edit.takeTheirs")}
+              </button>
+            </div>
+          )}
           <div class="start-row">
             <a class="button" href={route.page === "edit" ? missionAddress(route.missionId) : "#/"}>
               {t("edit.cancel")}

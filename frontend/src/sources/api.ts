@@ -103,8 +103,11 @@ export const forgetCompass = (craftId: string, offsetDeg: number) =>
 export const missions = (asked: Readonly<Record<string, string>>, after: string | null) =>
   json<MissionList>(`/missions?${new URLSearchParams(after === null ? asked : { ...asked, after })}`);
 export const mission = (id: string) => json<Mission>(missionPath(id));
-export const draftMission = (spec: MissionSpec) => json<Mission>("/missions", withBody("POST", spec));
-export const editMission = (id: string, spec: MissionSpec) => json<Mission>(`${missionPath(id)}/spec`, withBody("PUT", spec));
+/** id: sent again with the same one, it drafts nothing twice. */
+export const draftMission = (spec: MissionSpec, id = newCommandId()) => json<Mission>(`/missions?mission_id=${id}`, withBody("POST", spec));
+/** fromSeq: of what was edited; without, what is stored is replaced unseen. */
+export const editMission = (id: string, spec: MissionSpec, fromSeq?: number) =>
+  json<Mission>(`${missionPath(id)}/spec${fromSeq === undefined ? "" : `?from_seq=${fromSeq}`}`, withBody("PUT", spec));
 export const preflight = (id: string) => json<PreflightReply>(`${missionPath(id)}/preflight`, { method: "POST" });
 export const preview = (spec: MissionSpec, signal?: AbortSignal) => json<Preview>("/preview", withBody("POST", spec, signal));
 export const track = (id: string, craftId: string) => json<Track>(`${missionPath(id)}/track?craft=${encodeURIComponent(craftId)}`);

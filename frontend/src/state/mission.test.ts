@@ -167,7 +167,7 @@ describe("the mission as a fold of its events", () => {
 
   it("takes back the checks when the specification changes", () => {
     const checked: MissionEvent = { kind: "preflight_checked", passed: true, checks: [] };
-    const edited = { kind: "mission_edited", spec: someSpec() } as const;
+    const edited = { kind: "mission_edited", spec: someSpec(), by: "anna" } as const;
     expect(fold(checked).preflightPassed).toBe(true);
     expect(fold(checked, edited).preflightPassed).toBeNull();
   });
@@ -241,6 +241,7 @@ describe("several emitters and several craft", () => {
     const state = fold({ kind: "mission_drafted", spec: TWO }, someBearing({ emitter_id: "b" }), {
       kind: "mission_edited",
       spec: someSpec(),
+      by: "anna",
     });
     expect([...state.emitters.keys()]).toEqual([EMITTER]);
   });

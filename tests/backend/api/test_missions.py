@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from uuid import uuid4
 
 import pytest
@@ -71,6 +72,41 @@ async def test_editing_replaces_the_specification(client):
     edited = (await client.put(f"{url}/spec", json=spec(name="Other"))).json()
     assert edited["name"] == edited["spec"]["name"] == "Other"
     assert (await client.get(url)).json() == edited
+
+
+async def test_an_edit_of_what_was_saved_since_is_refused_and_replaces_it_when_it_says_so(client):
+    first = await draft(client)
+    url = f"/api/missions/{first['mission_id']}/spec"
+    theirs = (await client.put(url, json=spec(name="Theirs"), params={"from_seq": first["spec_seq"]})).json()
+    late = is_problem(await client.put(url, json=spec(name="Mine"), params={"from_seq": first["spec_seq"]}), 409)
+    assert late["reason"] == {"code": "edited_meanwhile", "by": "operator", "seq": theirs["spec_seq"]}
+    assert (await client.get(f"/api/missions/{first['mission_id']}")).json() == theirs
+    over = await client.put(url, json=spec(name="Mine"), params={"from_seq": late["reason"]["seq"]})
+    assert (over.status_code, over.json()["name"]) == (200, "Mine")
+
+
+async def test_an_edit_whose_answer_was_lost_is_sent_again_and_stored_once(client):
+    first = await draft(client)
+    asked = {"json": spec(name="Mine"), "params": {"from_seq": first["spec_seq"]}}
+    stored = (await client.put(f"/api/missions/{first['mission_id']}/spec", **asked)).json()
+    assert (await client.put(f"/api/missions/{first['mission_id']}/spec", **asked)).json() == stored
+
+
+async def test_a_draft_whose_answer_was_lost_is_drafted_once(client):
+    own = {"mission_id": str(uuid4())}
+    first = await client.post("/api/missions", json=spec(), params=own)
+    assert (first.status_code, first.json()["mission_id"]) == (201, own["mission_id"])
+    again = is_problem(await client.post("/api/missions", json=spec(name="Other"), params=own), 409)
+    assert again["reason"] == {"code": "drafted_before", **own}
+    assert [m["name"] for m in (await client.get("/api/missions")).json()["missions"]] == ["Search"]
+    is_problem(await client.post("/api/missions", json=spec(), params={"mission_id": "../x"}), 422)
+
+
+async def test_of_two_drafts_of_one_id_at_once_one_is_stored(client):
+    own = {"mission_id": str(uuid4())}
+    both = await asyncio.gather(*(client.post("/api/missions", json=spec(name=n), params=own) for n in ("a", "b")))
+    assert sorted(reply.status_code for reply in both) == [201, 409]
+    assert len((await client.get("/api/missions")).json()["missions"]) == 1
 
 
 async def test_a_wrong_field_is_named(client):

@@ -37,7 +37,8 @@ async def test_drafts_are_checked_edited_and_refused_with_reasons(stage: Stage) 
     assert stage.journal.state(mission_id).phase == "ready"
     await stage.room.drafts.edit(mission_id, spec(speed_m_s=5.0), "anna")
     assert stage.journal.state(mission_id).phase == "draft"
-    assert stage.journal.of_kind(mission_id, MissionEdited)[0].spec.flight.speed_m_s == 5.0
+    edited = stage.journal.of_kind(mission_id, MissionEdited)[0]
+    assert (edited.spec.flight.speed_m_s, edited.by) == (5.0, "anna")
     assert not (await order(stage, mission_id, commands.Hold())).accepted
     with refusing(refusals.NoMission("nobody"), MissionNotFound):
         await stage.room.drafts.edit("nobody", spec(), "anna")

@@ -62,7 +62,7 @@ def every_input(state: MissionState) -> list[Input]:
         *(commanded(order, f"every-{i}") for i, order in enumerate(orders)),
         *(commanded(order, f"objected-{i}", Context((VETO,))) for i, order in enumerate(orders)),
         commanded(commands.Resume(), "on-ground", Context(on_ground=True)),
-        Edited(WAITING_SPEC),
+        Edited(WAITING_SPEC, "anna"),
         PreflightDone((CHECK,)),
         PreflightDone((FAILED_CHECK,)),
         BearingsArrived((bearing(number, source=PERSON, bearing_id=f"p{number}"),)),

@@ -67,8 +67,8 @@ def every_input(state: SearchState) -> list[SearchInput]:
         commands.AcknowledgeAlert(alert_id="storage-1"),
     )
     return [
-        Edited(SPEC),
-        Edited(WAITING_SPEC),
+        Edited(SPEC, "anna"),
+        Edited(WAITING_SPEC, "anna"),
         PreflightDone((CHECK,)),
         PreflightDone((FAILED_CHECK,)),
         BearingsArrived((bearing(1, source=PERSON, bearing_id=f"p{len(state.measured)}"),)),
@@ -133,10 +133,10 @@ def test_every_input_is_answered_in_every_stage(stage: Stage) -> None:
 
 def test_editing_takes_readiness_back_until_the_start() -> None:
     walk = SearchWalk().to("ready")
-    walk.give(Edited(WAITING_SPEC))
+    walk.give(Edited(WAITING_SPEC, "anna"))
     assert (walk.state.stage, walk.state.spec) == ("draft", WAITING_SPEC)
     started = SearchWalk().to("open")
-    assert started.give(Edited(WAITING_SPEC)) == ()
+    assert started.give(Edited(WAITING_SPEC, "anna")) == ()
     assert started.state.spec == SPEC
 
 
@@ -234,7 +234,7 @@ def test_a_stale_belief_is_not_recorded() -> None:
 def test_an_emitter_that_is_no_longer_looked_for_takes_its_bearings_with_it() -> None:
     walk = SearchWalk(TWO_SPEC)
     walk.arrive(bearing(1, source=PERSON), bearing(1, SECOND, PERSON, bearing_id="b"))
-    walk.give(Edited(SPEC))
+    walk.give(Edited(SPEC, "anna"))
     assert list(walk.state.emitters) == [FIRST_EMITTER]
     assert [b.bearing_id for b in walk.state.measured] == ["b1"]
 

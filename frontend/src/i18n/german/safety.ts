@@ -105,6 +105,11 @@ export const safety = {
     "Die Mission ist gestartet und lässt sich nicht mehr bearbeiten.",
     "Während sie hält, ihr Suchgebiet ändern, oder eine neue Mission entwerfen.",
   ],
+  edited_meanwhile: [
+    "Seit Sie die Mission geöffnet haben, wurde sie gespeichert von {by}.",
+    "Ansehen, was gespeichert wurde; dann Ihre Fassung darüber speichern oder von der anderen aus neu beginnen.",
+  ],
+  drafted_before: ["Die Mission {mission_id} ist schon entworfen.", "Sie öffnen und ändern."],
   mission_flies: ["Eine Mission fliegt.", "Die Antenne prüfen, wenn das Fluggerät am Boden ist."],
   still_under_way: ["Die Mission ist noch im Gang.", "Sie löschen, wenn sie vorbei ist und das Fluggerät am Boden steht."],
   was_deleted: ["Die Mission wurde gelöscht.", "Sie zuerst wiederherstellen: In der Liste der Missionen steht sie unter den gelöschten."],
