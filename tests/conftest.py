@@ -75,8 +75,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """What failed before it was tried again: what passed then is told by its name alone, and what failed again by its
-    second failure, which may follow from the first."""
+    """What failed before it was tried again: what passed then is only named, and what failed again is shown by
+    its second failure, which may follow from the first."""
     for report in terminalreporter.getreports("rerun"):
         terminalreporter.section(f"first failure of {report.nodeid}", "-")
         terminalreporter.write_line(report.longreprtext)

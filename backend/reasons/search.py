@@ -308,7 +308,7 @@ class FrequencyShared:
     code: Literal["frequency_shared"] = "frequency_shared"
     english: ClassVar[Words] = Words(
         "Two emitters send at {frequency_hz}, and not both are tags: no receiver can tell them apart.",
-        "Look for one of them at a time; tags at one frequency are told apart by their periods.",
+        "Look for one of them at a time; tags at one frequency are distinguished by their periods.",
     )
 
 
@@ -323,8 +323,8 @@ class FrequenciesTooNear:
     english: ClassVar[Words] = Words(
         "Emitters at {first_hz} and {second_hz} are so near to each other that the receiver hears each of them on both "
         "channels.",
-        "From {needed_hz} on they are told apart. Give tags nearer than that one frequency and their periods, and look "
-        "for other emitters one at a time.",
+        "From {needed_hz} on they are distinguished. Give tags nearer than that one frequency and their periods, and "
+        "look for other emitters one at a time.",
     )
 
 
@@ -351,7 +351,7 @@ class RhythmsTooAlike:
     english: ClassVar[Words] = Words(
         "At {frequency_hz} one tag sends every {first_s:3} and another every {second_s:3}: their rhythms are too much "
         "alike.",
-        "Tags that stray as much are told apart when their periods differ by {needed_s:3} or more. Look for one of "
+        "Tags that stray as much are distinguished when their periods differ by {needed_s:3} or more. Look for one of "
         "them at a time, or state a smaller jitter if theirs is.",
     )
 

@@ -45,7 +45,7 @@ LATEST_S = 4_102_444_800.0
 FEWEST_BEARINGS = 3
 """Fewer may well all lie within six degrees of north."""
 FEWEST_READINGS = 8
-"""An antenna's turn has at least this many. No list of bearings has so many from one spot in all directions."""
+"""An antenna's turn has at least this many. No list of bearings has as many from one spot in all directions."""
 HOVERS_M = 10.0
 """All readings of a turn are within this distance of its first. Bearings taken around an animal are farther apart."""
 EXPECTED = ("lat", "lon", "bearing_deg")

@@ -191,8 +191,8 @@ def _share_headings(turns: Sequence[tuple[Sequence[HeardAt], Sequence[HeardAt]]]
 
 
 def _beside(own: Sequence[HeardAt], others: Sequence[HeardAt], steps: float) -> int:
-    """How many of the others were read at a heading of their own, or between two that are no farther apart than so many
-    usual steps (0: at no other headings); none where the own are too few."""
+    """How many of the others were read at a heading of their own, or between two that are at most `steps` usual
+    steps apart (0: at no other headings); none where the own are too few."""
     at_deg, others_deg = (np.round([one.heading_deg for one in some], 1) % 360.0 for some in (own, others))
     around = np.unique(at_deg)
     if around.size < FEWEST_HEADINGS:

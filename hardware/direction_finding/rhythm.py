@@ -32,7 +32,7 @@ STRANGERS = 0.1
 """Pulses of nobody who is looked for, one of the tags' own."""
 COUNTED_MISSES = 4
 """More pulses in a row that were not heard say no more: the antenna looks elsewhere."""
-BEGINS_ANEW = 1e-3
+BEGINS_AGAIN = 1e-3
 """How probable it is that a tag whose rhythm is known goes on in another phase."""
 DRIFT = 2e-4
 """Of a period, by which it may change from one pulse to the next."""
@@ -183,8 +183,8 @@ class _Beam:
         # the pulse itself is not one that was missed
         itself = due.known & (missed >= due.periods) & (missed > self.missed)
         gain = np.where(itself, gain - assumed.miss, gain)
-        anew = np.where(due.known, assumed.begins + math.log(BEGINS_ANEW), -np.inf)
-        options = np.concatenate([np.zeros((base.size, 1)), gain, anew], axis=1) + base[:, None]
+        again = np.where(due.known, assumed.begins + math.log(BEGINS_AGAIN), -np.inf)
+        options = np.concatenate([np.zeros((base.size, 1)), gain, again], axis=1) + base[:, None]
 
         best = np.argsort(-options, axis=None, kind="stable")[:BEAM]
         parent, option = np.unravel_index(best, options.shape)

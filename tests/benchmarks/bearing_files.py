@@ -3,7 +3,7 @@
     python -m tests.benchmarks.bearing_files --files 400 --jobs 2
 
 Places and emitter are drawn evenly from a square. Each bearing has an error of its own, those of a file one in common,
-and some point anywhere. The command is told the range, and sigmas where the file states them, nothing else.
+and some point anywhere. The command gets the range, and sigmas where the file states them, nothing else.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     python -m tests.benchmarks.study_on_dask --workers 2 --runs 1500 --rounds 3 --out docs/measurements
 
 Scheduler and workers are processes of this machine, one thread each; the study is `crossfix study run --scheduler`, a
-process of its own that starts anew each time. One worker and several take turns; each has flown a short study before.
+process of its own that starts again each time. One worker and several take turns; each has flown a short study before.
 """
 
 from __future__ import annotations

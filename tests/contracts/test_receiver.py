@@ -233,7 +233,7 @@ async def test_of_several_tags_at_one_frequency_every_pulse_is_heard(receiver: R
     assert all(a.at_s < b.at_s for a, b in itertools.pairwise(heard))
     if isinstance(receiver, LoopbackPayload):
         assert receiver.hub.channels is not None
-        assert [one.channel() for one in receiver.hub.channels] == [SHARED], "the payload is told of every rhythm"
+        assert [one.channel() for one in receiver.hub.channels] == [SHARED], "the payload hears of every rhythm"
         return
     seconds = heard[-1].at_s - heard[0].at_s
     assert len(heard) > 1.3 * seconds / 0.4, "more than either tag sends alone"

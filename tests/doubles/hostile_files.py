@@ -142,7 +142,7 @@ def noise_iq(size: int) -> bytes:
 
 
 def bundle_of(size: int) -> bytes:
-    """A bundle whose mission is so many bytes of numbers."""
+    """A bundle whose mission is this many bytes of numbers."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as box:
         box.writestr("mission.json", b"[" + b"1," * (size // 2) + b"1]")

@@ -78,7 +78,7 @@ it("more emitters than a search may have are refused, not cut off in silence", (
   expect(bad.map((b) => b.problem)).toEqual(["edit.list.bad.many", "edit.list.bad.many"]);
 });
 
-it("tags at one frequency are told apart by the period behind the slash, and shown with it", () => {
+it("tags at one frequency are distinguished by the period behind the slash, and shown with it", () => {
   const { emitters, bad } = readList("150.1/1.3 vixen\n150,1 / 1,05 s cub\n151/1.3", before);
   expect(bad).toEqual([]);
   expect(emitters.map((e) => [e.frequency_hz, e.kind, e.pulse_period_s, e.label])).toEqual([

@@ -290,7 +290,7 @@ export const pagesEn = {
   "edit.list.bad.frequency": "begin with a frequency, such as 150.125 or 868300 kHz.",
   "edit.list.bad.range": "give a frequency above zero, up to 1000 GHz.",
   "edit.list.bad.twice":
-    "this frequency is in the list already; remove one of the two. Tags at one frequency are told apart by their periods: 150.125/1.3 and 150.125/1.05.",
+    "this frequency is in the list already; remove one of the two. Tags at one frequency are distinguished by their periods: 150.125/1.3 and 150.125/1.05.",
   "edit.list.bad.period": "give a period above 0 and up to 60 seconds after the slash.",
   "edit.list.bad.many": "a search has at most 32 emitters; begin another one for the rest.",
   "edit.list.bad.priority": "give ! a number from 1 (first) to 32.",

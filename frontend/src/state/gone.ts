@@ -4,7 +4,7 @@ import type { Route } from "./route";
 
 const gone = signal<string | null>(null);
 
-/** null: another one is looked at; that one is asked for anew the next time. */
+/** null: another one is looked at; that one is asked for again the next time. */
 export const noteGone = (missionId: string | null): void => {
   gone.value = missionId;
 };

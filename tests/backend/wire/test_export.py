@@ -1,4 +1,4 @@
-"""What other programs are told of several emitters and their order of importance."""
+"""What other programs learn of several emitters and their order of importance."""
 
 import json
 

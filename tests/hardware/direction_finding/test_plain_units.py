@@ -1,4 +1,4 @@
-"""Radians, linear power and values that stand for "nothing" are told, never taken for degrees and decibels."""
+"""Radians, linear power and values that stand for "nothing" are reported, never taken for degrees and decibels."""
 
 from __future__ import annotations
 

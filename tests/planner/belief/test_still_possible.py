@@ -83,7 +83,7 @@ def test_a_compass_that_changes_for_good_is_found_out_again() -> None:
 def test_a_compass_that_is_off_by_something_else_on_the_way_leaves_nothing_out(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Its bearings allow for a few degrees only; whoever flies is told so by many stretches."""
+    """Its bearings allow for a few degrees only; many stretches say so."""
     turned = [
         replace(one, front=tuple(np.array(one.front) + math.radians(20.0)))
         for leg in range(3)

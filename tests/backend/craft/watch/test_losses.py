@@ -13,7 +13,7 @@ def test_losses_are_told_once_and_again_after_worse_trouble() -> None:
     assert watch.look(20.0, None, 1.0) == [inputs.ReceiverLoses(SamplesLost(20.0))]
     assert watch.look(30.0, None, 2.0) == []
     assert watch.look(3.0, None, 90.0) == [], "not told to and fro"
-    assert watch.look(0.0, ReceiverUnplugged(), 91.0) == [], "that is what is told then"
+    assert watch.look(0.0, ReceiverUnplugged(), 91.0) == [], "that is what the pilot hears then"
     assert watch.look(30.0, None, 92.0) == [inputs.ReceiverLoses(SamplesLost(30.0))]
     assert watch.look(1.0, None, 93.0) == []
     assert watch.look(1.0, None, 93.0 + CALM_S) == [inputs.ReceiverKeepsUp()]
