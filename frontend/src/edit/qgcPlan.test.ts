@@ -69,6 +69,27 @@ it.each([
     }),
   ],
   ["no radius", plan({ circles: [{ circle: { center: [1, 2] } }] })],
+  ["an endless radius", plan({ circles: [{ circle: { center: [1, 2], radius: 1e300 } }] })],
+  ["a circle that is none", plan({ circles: [null] })],
+  ["a centre that is no place", plan({ circles: [{ circle: { center: "here", radius: 5 } }] })],
+  ["a polygon that is none", plan({ polygons: [null] })],
+  ["corners that are a word", plan({ polygons: [{ polygon: "corners" }] })],
+  ["a corner that is none", plan({ polygons: [{ polygon: [[50, 7], null, [51, 8]] }] })],
+  [
+    "a corner beyond the pole",
+    plan({
+      polygons: [
+        {
+          polygon: [
+            [50, 7],
+            [500, 8],
+            [51, 8],
+          ],
+        },
+      ],
+    }),
+  ],
+  ["a fence that is none", plan(7)],
 ])("says why it cannot read a plan: %s", (_name, text) => {
   expect(() => readPlan(text)).toThrow(NotAPlan);
   expect(() => readPlan(text)).toThrow(/^edit\.plan\./);
