@@ -1,22 +1,29 @@
-// Leaves something out of the belief, or counts it again.
+// Leaves something out of the belief, or counts it again: a bearing, a turn, a leg, or all that somebody sent.
 import { useEffect, useRef } from "preact/hooks";
 import { send } from "../commands/send";
 import { type MessageKey, t } from "../i18n";
 import { TAP_MS } from "../state/tap";
+import type { Command } from "../wire";
 
 /** What was accepted and is not told by then was undone at once by another console. */
 const UNTOLD_MS = 5000;
 
-/** of: the bearing, the sweep of a turn that heard nothing, or the leg. */
-export function CountButton({ id, of, leftOut, words }: { id: string; of: string; leftOut: boolean; words: MessageKey }) {
-  const order = leftOut
-    ? ({ kind: "include_bearing", bearing_id: of } as const)
-    : ({ kind: "exclude_bearing", bearing_id: of, reason: "" } as const);
+interface Ordering {
+  id: string;
+  /** What it is about and as it stands now: once that is another, the next press counts. */
+  about: string;
+  order: Command;
+  testId: string;
+  isPressed?: boolean;
+  words: string;
+}
+
+export function OrderButton({ id, about, order, testId, isPressed, words }: Ordering) {
   const asked = useRef(false);
   const pressedAt = useRef(Number.NEGATIVE_INFINITY);
   useEffect(() => {
     asked.current = false;
-  }, [of, leftOut]);
+  }, [about]);
   const press = async ({ timeStamp }: Event) => {
     if (asked.current || timeStamp - pressedAt.current < TAP_MS) return; // a thumb's second tap would be refused, or undo it
     pressedAt.current = timeStamp;
@@ -28,8 +35,16 @@ export function CountButton({ id, of, leftOut, words }: { id: string; of: string
     else again();
   };
   return (
-    <button type="button" class="small" data-testid={leftOut ? "include" : "exclude"} onClick={press}>
-      {t(words)}
+    <button type="button" class="small" data-testid={testId} aria-pressed={isPressed} onClick={press}>
+      {words}
     </button>
   );
+}
+
+/** of: the bearing, the sweep of a turn that heard nothing, or the leg. */
+export function CountButton({ id, of, leftOut, words }: { id: string; of: string; leftOut: boolean; words: MessageKey }) {
+  const order = leftOut
+    ? ({ kind: "include_bearing", bearing_id: of } as const)
+    : ({ kind: "exclude_bearing", bearing_id: of, reason: "" } as const);
+  return <OrderButton id={id} about={`${of} ${leftOut}`} order={order} testId={leftOut ? "include" : "exclude"} words={t(words)} />;
 }

@@ -1,6 +1,5 @@
 // The newest sweep, or the one picked: plot, bearing, quality, why it was refused, leave it out.
 import { useState } from "preact/hooks";
-import { send } from "../commands/send";
 import { reasonText, t } from "../i18n";
 import { sourceKey } from "../state/emitter";
 import { sweep as sweepHeard } from "../state/heard";
@@ -12,7 +11,7 @@ import type { MissionView } from "../state/view";
 import { sourceName } from "../state/words";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { BearingMeasured, BearingSource, SweepProgress, SweepRejected } from "../wire";
-import { CountButton } from "./CountButton";
+import { CountButton, OrderButton } from "./CountButton";
 import { OnTheWay } from "./OnTheWay";
 import { type PolarData, PolarPlot } from "./PolarPlot";
 import { ProblemNote } from "./ProblemNote";
@@ -112,15 +111,14 @@ function MuteButton({ id, source }: { id: string; source: BearingSource }) {
   if (!mutable) return null;
   const muted = mission.value.muted.has(sourceKey(source));
   return (
-    <button
-      type="button"
-      class="small"
-      data-testid="mute-source"
-      aria-pressed={muted}
-      onClick={() => void send("sweep", id, { ...mutable, kind: "mute_source", muted: !muted, reason: "" })}
-    >
-      {t(muted ? "sweep.unmute" : "sweep.mute", { source: sourceName(source) })}
-    </button>
+    <OrderButton
+      id={id}
+      about={`${sourceKey(source)} ${muted}`}
+      order={{ ...mutable, kind: "mute_source", muted: !muted, reason: "" }}
+      testId="mute-source"
+      isPressed={muted}
+      words={t(muted ? "sweep.unmute" : "sweep.mute", { source: sourceName(source) })}
+    />
   );
 }
 
