@@ -197,13 +197,24 @@ def order_of(command: Command) -> str:
 Fence = Annotated[int | None, Field(ge=0, le=2**31 - 1)]
 
 
+class Press(Model):
+    """page: an id that it has for as long as it is open. number: of its orders so far. Hold, return, landing and resume
+    are refused where the craft has accepted a later one of the same page: an order that a bad link has held up does not
+    undo the next."""
+
+    page: UUID
+    number: int = Field(ge=1, le=2**31 - 1)
+
+
 class CommandRequest(Model):
     """command_id: made by the client; sent twice, the command is carried out once. fence: of the control lease that it
-    is given under, None where there are no accounts, or for what needs no control."""
+    is given under, None where there are no accounts, or for what needs no control. press: None: it counts whenever it
+    comes."""
 
     command_id: UUID
     command: Command
     fence: Fence = None
+    press: Press | None = None
 
 
 class CraftRequest(Model):
@@ -213,6 +224,7 @@ class CraftRequest(Model):
     command_id: UUID
     command: Annotated[Hold | Return | Land | Resume, Field(discriminator="kind")]
     fence: Fence = None
+    press: Press | None = None
 
 
 class CommandReply(Model):

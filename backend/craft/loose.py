@@ -129,6 +129,10 @@ class LooseCraft:
         first, answer = self._answered[command_id]
         return answer if first == command else CommandIdReused(first.kind)
 
+    def answered(self, command_id: str) -> bool:
+        """It gets its answer again."""
+        return command_id in self._answered
+
     def leave(self) -> None:
         """The server is about to end: a return by our own way points is held."""
         self._give(inputs.Leaving(self.equipment.vehicle.telemetry().authority.homeward))

@@ -25,17 +25,19 @@ from backend.craft.safety import resume_vetoes
 from backend.craft.state import CraftState
 from backend.events import GroundFact, Phase
 from backend.mission import control
-from backend.mission.effects import Effect, Reply
+from backend.mission.effects import Effect
 from backend.mission.elsewhere import Elsewhere
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
 from backend.mission.learning import learn
 from backend.mission.nets import NetsKeeper
+from backend.mission.presses import Presses
 from backend.mission.records import Records
+from backend.mission.replies import refusal, reply
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
 from backend.reasons import Interrupted, Reason
-from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding, WasDeleted
+from backend.reasons.refusals import AnotherMissionFlies, LaterOrderCounts, MissionOver, ServerIsEnding, WasDeleted
 from backend.reasons.safety import AlreadyInAir
 from backend.reasons.terrain import GroundNotKept
 from backend.search.antenna import antenna_fact
@@ -90,6 +92,7 @@ class Flights:
     loose: dict[str, LooseCraft] = field(init=False)
     elsewhere: Elsewhere = field(init=False)
     ending: bool = False
+    presses: Presses = field(default_factory=Presses)
     _tasks: list[asyncio.Task[None]] = field(default_factory=list[asyncio.Task[None]])
 
     def __post_init__(self) -> None:
@@ -137,18 +140,18 @@ class Flights:
         """
         runner = self.running(mission_id)
         if self.ending and not isinstance(request.command, WHILE_ENDING):
-            return CommandReply(command_id=request.command_id, accepted=False, reason=ServerIsEnding(), seq=0)
+            return reply(request, ServerIsEnding())
         if runner is not None and isinstance(request.command, commands.ChangeArea):
             changed = await self.elsewhere.change(lambda: self.running(mission_id), request, request.command, author)
             if changed is not None:
                 return await _answered(changed[0], request, changed[1])
             runner = None
         if runner is not None:
-            return await _in_flight(runner, request, author, operates)
+            return await self._in_flight(runner, request, author, operates)
         async with self.records.lock(mission_id):
             runner = self.running(mission_id)
             if runner is not None:
-                return await _in_flight(runner, request, author, operates)
+                return await self._in_flight(runner, request, author, operates)
             return await self._on_the_ground(mission_id, request, author, operates)
 
     async def command_craft(self, craft_id: str, request: CraftRequest, author: Author) -> CommandReply:
@@ -156,10 +159,30 @@ class Flights:
         loose, runner, command_id = self.loose[craft_id], self.active, request.command_id
         if runner is not None and craft_id in runner.crafts:
             named = request.command.model_copy(update={"craft_id": craft_id})
-            in_mission = CommandRequest(command_id=command_id, command=named, fence=request.fence)
-            return await _in_flight(runner, in_mission, author, everybody)
+            in_mission = CommandRequest(command_id=command_id, command=named, fence=request.fence, press=request.press)
+            return await self._in_flight(runner, in_mission, author, everybody)
+        if self.presses.is_late(request.press, request.command, [craft_id]) and not loose.answered(str(command_id)):
+            return reply(request, LaterOrderCounts())
         refused = loose.order(str(command_id), author.name, request.command)
-        return CommandReply(command_id=command_id, accepted=refused is None, reason=refused, seq=0)
+        if refused is None:
+            self.presses.accepted(request.press, request.command, [craft_id])
+        return reply(request, refused)
+
+    async def _in_flight(
+        self, runner: MissionRunner, request: CommandRequest, author: Author, operates: Operates
+    ) -> CommandReply:
+        """At once: what moves or stops the vehicle is under way before the journal is waited for, and is answered for
+        where nothing can be stored."""
+        command, press = request.command, request.press
+        named = command.craft_id if isinstance(command, commands.CraftCommand) else None
+        crafts = list(runner.crafts) if named is None else [named]
+        known = str(request.command_id) in runner.state.answered
+        if self.presses.is_late(press, command, crafts) and not known:
+            return reply(request, LaterOrderCounts())
+        asked = runner.command(request, author, holder_gone(runner.state, operates))
+        if refusal(asked) is None:
+            self.presses.accepted(press, command, crafts)
+        return await _answered(runner, request, asked)
 
     async def _on_the_ground(
         self, mission_id: str, request: CommandRequest, author: Author, operates: Operates
@@ -180,7 +203,7 @@ class Flights:
         asked, seq = await self.records.give(mission_id, state, given)
         if isinstance(request.command, commands.ExcludeBearing | commands.IncludeBearing | commands.MuteSource):
             await self.records.settle_beliefs(mission_id)
-        return _reply(request, asked, seq or last_seq)
+        return reply(request, refusal(asked), seq or last_seq)
 
     async def _start(
         self,
@@ -197,7 +220,7 @@ class Flights:
         craft = self.equipment.crafts.get(command.craft_id or self.equipment.first.craft_id)
         if craft is None:
             asked, seq = await self.records.give(mission_id, state, commanded({}))
-            return _reply(request, asked, seq or last_seq)
+            return reply(request, refusal(asked), seq or last_seq)
         async with self.starting:
             known = await self.equipment.knowing(state.search.mission, craft)
             objections: tuple[Reason, ...] = ()
@@ -223,7 +246,7 @@ class Flights:
             given = commanded({craft.craft_id: Context(objections, start)})
             if task is None or objections:
                 asked, seq = await self.records.give(mission_id, state, given)
-                return _reply(request, asked, seq or last_seq)
+                return reply(request, refusal(asked), seq or last_seq)
             runner = MissionRunner(mission_id, state, last_seq, task, self.equipment)
             self.active = runner
             runner.join(craft)
@@ -234,7 +257,7 @@ class Flights:
             else:
                 self._fly(runner)
                 await runner.outbox.flushed(ANSWERED_S)
-            return _reply(request, asked, runner.outbox.last_seq)
+            return reply(request, refusal(asked), runner.outbox.last_seq)
 
     async def _keep_ground(self, task: SearchTask | None) -> tuple[GroundFact | None, tuple[Reason, ...]]:
         """What is flown over, stored before anything flies, and what forbids the start when it cannot be."""
@@ -368,19 +391,6 @@ def holder_gone(state: MissionState, operates: Operates) -> bool:
     return holder is not None and not operates(holder.person)
 
 
-async def _in_flight(
-    runner: MissionRunner, request: CommandRequest, author: Author, operates: Operates
-) -> CommandReply:
-    """At once: what moves or stops the vehicle is under way before the journal is waited for, and is answered for
-    where nothing can be stored."""
-    return await _answered(runner, request, runner.command(request, author, holder_gone(runner.state, operates)))
-
-
 async def _answered(runner: MissionRunner, request: CommandRequest, asked: tuple[Effect, ...]) -> CommandReply:
     await runner.outbox.flushed(ANSWERED_S)
-    return _reply(request, asked, runner.outbox.last_seq)
-
-
-def _reply(request: CommandRequest, asked: tuple[Effect, ...], seq: int) -> CommandReply:
-    answer = next(effect for effect in asked if isinstance(effect, Reply))
-    return CommandReply(command_id=request.command_id, accepted=answer.reason is None, reason=answer.reason, seq=seq)
+    return reply(request, refusal(asked), runner.outbox.last_seq)

@@ -47,6 +47,14 @@ class NotHeld:
 
 
 @dataclass(frozen=True, slots=True)
+class LaterOrderCounts:
+    """One that was given first, and came last."""
+
+    code: Literal["later_order_counts"] = "later_order_counts"
+    english: ClassVar[Words] = Words("An order that was given later on the same page has been accepted already.")
+
+
+@dataclass(frozen=True, slots=True)
 class NoCountdown:
     code: Literal["no_countdown"] = "no_countdown"
     english: ClassVar[Words] = Words("Nothing counts down: the countdown is over, or was stopped before.")
@@ -266,6 +274,7 @@ RefusalReason = (
     | AlreadyStarted
     | MissionOver
     | NotHeld
+    | LaterOrderCounts
     | NoCountdown
     | LandingAlready
     | OnTheWayHome

@@ -267,6 +267,27 @@ class BundleFileWrong:
     )
 
 
+FactFault = Literal["place", "region", "spread", "unknown_bearing", "not_started", "name", "id"]
+
+
+@dataclass(frozen=True, slots=True)
+class BundleFactWrong:
+    """seq: of the fact in the mission of a bundle that no Crossfix recorded; the whole bundle is not brought in."""
+
+    fault: FactFault
+    seq: int
+    code: Literal["bundle_fact_wrong"] = "bundle_fact_wrong"
+    english: ClassVar[Words] = Words(
+        "Event {seq} in the bundle’s mission.json {fault?place=tells an estimate that is no place on Earth"
+        "|region=tells a 95 % region that is no area|spread=tells an uncertainty or a number that cannot be"
+        "|unknown_bearing=leaves out, or takes in again, a bearing that there is not"
+        "|not_started=tells of a craft that had not started"
+        "|name=gives a name whose characters turn the direction of writing|id=names a sweep with characters that no id "
+        "has}.",
+        "Nothing was brought in. Choose the zip file that “All of it” saves under “Take away”, unchanged.",
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class UploadBrokeOff:
     code: Literal["upload_broke_off"] = "upload_broke_off"
@@ -338,6 +359,7 @@ RequestReason = (
     | ExportUnreadable
     | BundleUnreadable
     | BundleFileWrong
+    | BundleFactWrong
     | UploadBrokeOff
     | NoPayloadExpected
     | UnknownToken

@@ -21,23 +21,11 @@ from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import (
-    BearingExcluded,
-    BearingIncluded,
-    BearingMeasured,
-    BeliefUpdated,
-    Event,
-    HeardOnTheWay,
-    MissionBroughtIn,
-    MissionDrafted,
-    MissionEdited,
-    MissionRestored,
-    Recorded,
-    SweepRejected,
-)
+from backend.events import Event, MissionBroughtIn, MissionRestored, Recorded
 from backend.mission.state import fold as fold_mission
 from backend.ports import TrackPoint
-from backend.reasons.request import BundleFileWrong, BundleUnreadable
+from backend.reasons.request import BundleFactWrong, BundleFileWrong, BundleUnreadable
+from backend.store.brought_facts import is_id, of_emitters_looked_for, on_earth, unfit
 from backend.store.digest import MissionDigest, fold, to_columns
 from backend.store.entries import EventRow, SweepEntry, TrackEntry, decode, to_records, to_row
 from backend.store.exported import RECORDED, ExportedLater, NotExported, export_of_today
@@ -73,8 +61,6 @@ WRITE_S = 10.0
 AT_ONCE = 64
 """Rows of one statement: to pack their texts holds the event loop."""
 
-OfEmitter = BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected | HeardOnTheWay
-
 SWEEP = TypeAdapter(SweepEntry)
 TRACK = TypeAdapter(TrackEntry)
 
@@ -85,7 +71,7 @@ InFile = Literal["foreign", "damaged", "not_exported"]
 class BundleRefused(ReasonedError):
     """It is no bundle that can be brought in."""
 
-    def __init__(self, reason: BundleUnreadable | BundleFileWrong) -> None:
+    def __init__(self, reason: BundleUnreadable | BundleFileWrong | BundleFactWrong) -> None:
         super().__init__(reason)
 
 
@@ -228,31 +214,17 @@ def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
     if len(recorded) > MOST_EVENTS:
         raise _refused("too_large")
     in_order = all(r.seq == seq and r.mission_id == mission_id for seq, r in enumerate(recorded, start=1))
-    sound = in_order and all(_in_time(r.at_utc) for r in recorded) and _of_emitters_looked_for(recorded)
-    if not sound or not _is_id(mission_id):
+    sound = in_order and all(_in_time(r.at_utc) for r in recorded) and of_emitters_looked_for(recorded)
+    if not sound or not is_id(mission_id):
         raise _wrong("not_exported", JOURNAL)
+    wrong = unfit(recorded)
+    if wrong is not None:
+        raise BundleRefused(wrong)
     return recorded, today["tracks"]
-
-
-def _of_emitters_looked_for(recorded: Sequence[Recorded]) -> bool:
-    """Of any other no server records a bearing, and no export finds its frequency."""
-    emitters: frozenset[str] = frozenset()
-    for record in recorded:
-        fact = record.event
-        if isinstance(fact, MissionDrafted | MissionEdited):
-            emitters = frozenset(emitter.emitter_id for emitter in fact.spec.emitters)
-        elif isinstance(fact, OfEmitter) and fact.emitter_id not in emitters:
-            return False
-    return True
 
 
 def _in_time(at_utc: datetime) -> bool:
     return at_utc.tzinfo is not None and EARLIEST <= at_utc < LATEST
-
-
-def _is_id(text: Any) -> bool:
-    plain = isinstance(text, str) and text.isascii() and text.replace("-", "").replace("_", "").isalnum()
-    return plain and len(text) <= 64
 
 
 def _lines(files: Mapping[str, bytes], name: str, most: int) -> Iterable[tuple[bytes, str]]:
@@ -272,12 +244,12 @@ def _sweep(told: tuple[bytes, str], mission_id: str) -> SweepEntry:
         counts = (sweep.place_number, sweep.attempt, sweep.clipped_samples)
         sound = (
             sweep.mission_id == mission_id
-            and _is_id(sweep.sweep_id)
+            and is_id(sweep.sweep_id)
             and found.eof
             and len(samples) % ROW_BYTES == 0
-            and _on_earth(sweep.lat_deg, sweep.lon_deg)
-            and _is_id(sweep.emitter_id)
-            and (sweep.craft_id is None or _is_id(sweep.craft_id))
+            and on_earth(sweep.lat_deg, sweep.lon_deg)
+            and is_id(sweep.emitter_id)
+            and (sweep.craft_id is None or is_id(sweep.craft_id))
             and 0 < sweep.frequency_hz <= HIGHEST_HZ
             and all(number is None or abs(number) <= MOST_TOLD for number in told_of)
             and all(0 <= count <= MOST_COUNTED for count in counts)
@@ -295,7 +267,7 @@ def _track(told: tuple[bytes, str], mission_id: str) -> TrackEntry:
     line, name = told
     try:
         track = TRACK.validate_python(decode(line))
-        sound = track.mission_id == mission_id and _is_id(track.craft_id) and all(map(_sound, track.points))
+        sound = track.mission_id == mission_id and is_id(track.craft_id) and all(map(_sound, track.points))
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         raise _wrong("damaged", name) from error
     if not sound:
@@ -307,14 +279,10 @@ def _sound(point: TrackPoint) -> bool:
     told = (point.altitude_amsl_m, point.altitude_relative_m, point.heading_deg, point.battery_percent)
     return (
         0 <= point.at_s < LATEST.timestamp()
-        and _on_earth(point.lat_deg, point.lon_deg)
+        and on_earth(point.lat_deg, point.lon_deg)
         and not any(value is not None and abs(value) > MOST_TOLD for value in told)
         and (point.mode is None or (len(point.mode) <= LONGEST_MODE and point.mode.isprintable()))
     )
-
-
-def _on_earth(lat_deg: float, lon_deg: float) -> bool:
-    return abs(lat_deg) <= 90 and abs(lon_deg) <= 180
 
 
 def _thin_tracks(paths: Mapping[str, Any], mission_id: str) -> tuple[TrackEntry, ...]:
@@ -327,7 +295,7 @@ def _thin_tracks(paths: Mapping[str, Any], mission_id: str) -> tuple[TrackEntry,
                 for at, lat, lon, amsl_m, heading in rows
             ]
             entry = TRACK.validate_python(TrackEntry(mission_id, craft_id, tuple(points)))
-            if not _is_id(craft_id) or not all(map(_sound, points)):
+            if not is_id(craft_id) or not all(map(_sound, points)):
                 raise _wrong("not_exported", JOURNAL)
             found.append(entry)
     except (ValueError, TypeError, AttributeError, OverflowError) as error:

@@ -200,9 +200,22 @@ def it_counts_against_a_resume_that_comes_late(server: Server, screen: Screen, m
         screen.slide("resume-slider")
     with screen.page.expect_response("**/commands"):
         screen.part("hold").click()
-    with screen.page.expect_response("**/commands"):
+    with screen.page.expect_response("**/commands") as answered:
         late[0].continue_()
+    assert answered.value.json()["reason"] == {"code": "later_order_counts"}
     screen.page.wait_for_timeout(2000)
     screen.expect_phase("hold")
-    ordered = [e["reason"].get("order") for e in server.events(made) if e["kind"] == "phase_changed"]
-    assert ordered[-2:] == ["resume", "hold"]
+    assert "resume_ordered" not in [e["kind"] for e in server.events(made)]
+    screen.page.unroute("**/commands", delay)
+    it_goes_out_at_once_when_it_is_pressed_again(screen)
+
+
+def it_goes_out_at_once_when_it_is_pressed_again(screen: Screen) -> None:
+    hung = list[Route]()
+    screen.page.route("**/commands", lambda route: hung.append(route), times=1)
+    screen.part("abort").click()
+    screen.page.wait_for_timeout(1000)
+    assert len(hung) == 1
+    screen.part("abort").click()
+    screen.expect_phase("aborted", "returning")
+    hung[0].abort()

@@ -1,9 +1,10 @@
 // @vitest-environment happy-dom
 // Of two orders the last one pressed counts, whatever becomes of either on its way.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import type { Sending } from "../sources/api";
 import { accepted, FakeSource } from "../sources/fakeSource";
 import { localProblem, RequestFailed, unreachable } from "../sources/problem";
-import { live } from "../state/connection";
+import { source as connected, live } from "../state/connection";
 import type { Flown } from "../state/flying";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
@@ -14,6 +15,7 @@ import { resume, sendUrgent, urgent } from "./urgent";
 
 const M: Flown = { id: "m", craftId: "c", phase: "flying" };
 const refused: CommandReply = { ...accepted, accepted: false, reason: { code: "pilot_controls" } };
+const late: CommandReply = { ...accepted, accepted: false, reason: { code: "later_order_counts" } };
 
 type Fate = "at once" | "late" | "late reply" | "lost" | "reply lost" | "late, reply lost" | "refused";
 /** A number: the status of the answer. */
@@ -21,28 +23,38 @@ type Answer = Fate | number;
 
 const later = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** A server that carries out each command id once, behind a link that treats the first try of each kind as it was asked to. */
+/**
+ * A server that carries out each command id once and nothing that was given before what each craft has accepted, behind
+ * a link that treats the first try of each kind as it was asked to.
+ */
 class Served extends FakeSource {
   readonly done: string[] = [];
   private readonly known = new Map<string, CommandReply>();
+  private readonly last = new Map<string, number>();
   constructor(private readonly fates: Partial<Record<Command["kind"], Answer[]>>) {
     super("m");
   }
-  private carryOut(kind: Command["kind"], id: string, fate?: Fate): CommandReply {
+  private carryOut(missionId: string, command: Command, { commandId: id = "", press = 0 }: Sending, fate?: Fate): CommandReply {
     const known = this.known.get(id);
     if (known) return known;
-    const reply = fate === "refused" ? refused : accepted;
-    if (reply.accepted) this.done.push(kind);
+    const all = live.peek().status?.value.crafts.map(({ craft_id }) => craft_id) ?? [missionId];
+    const crafts = "craft_id" in command && command.craft_id && all.includes(command.craft_id) ? [command.craft_id] : all;
+    const isLate = command.kind !== "abort" && crafts.every((craft) => press < (this.last.get(craft) ?? 0));
+    const reply = isLate ? late : fate === "refused" ? refused : accepted;
+    if (reply.accepted) {
+      this.done.push(command.kind);
+      for (const craft of crafts) this.last.set(craft, Math.max(press, this.last.get(craft) ?? 0));
+    }
     this.known.set(id, reply);
     return reply;
   }
-  override async send(missionId: string, command: Command, commandId = String(Math.random())): Promise<CommandReply> {
-    await super.send(missionId, command, commandId);
+  override async send(missionId: string, command: Command, sending: Sending = {}): Promise<CommandReply> {
+    await super.send(missionId, command, sending);
     const fate = this.fates[command.kind]?.shift();
     if (typeof fate === "number") throw new RequestFailed(localProblem("no", "", fate));
     if (fate === "lost") throw unreachable("no link");
     if (fate?.startsWith("late") && fate !== "late reply") await later(300);
-    const reply = this.carryOut(command.kind, commandId, fate);
+    const reply = this.carryOut(missionId, command, sending, fate);
     if (fate === "late reply") await later(300);
     if (fate?.endsWith("reply lost")) throw unreachable("no link");
     return reply;
@@ -57,8 +69,10 @@ const begin = (fates: Partial<Record<Command["kind"], Answer[]>>) => {
 const pass = (ms = 10_000) => vi.advanceTimersByTimeAsync(ms);
 const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
 
+let begun = 0;
 beforeEach(() => {
   vi.useFakeTimers();
+  vi.advanceTimersByTime(60_000 * ++begun); // or a press would be the second tap of the test before
 });
 afterEach(async () => {
   await vi.runAllTimersAsync();
@@ -78,9 +92,32 @@ const PAIRS = FATES.flatMap((older) => FATES.map((newer) => [older, newer] as co
 const KINDS = [
   ["return", "hold"],
   ["hold", "land"],
-  ["abort", "hold"],
   ["hold", "abort"],
 ] as const;
+
+/** When a first try reaches the server, in ms; what is lost comes with the next one. */
+const REACHES: Record<Exclude<Fate, "refused">, number> = {
+  "at once": 0,
+  "late reply": 0,
+  "reply lost": 0,
+  late: 300,
+  "late, reply lost": 300,
+  lost: 700,
+};
+
+describe("of an abort, then a hold", () => {
+  it.each(PAIRS)("the abort %s and the hold %s: an abort counts whenever it comes", async (older, newer) => {
+    begin({ abort: [older], hold: [newer] });
+    void sendUrgent(M, "abort");
+    await pass(100);
+    void sendUrgent(M, "hold");
+    await pass();
+    const aborted = older === "refused" ? Number.NEGATIVE_INFINITY : REACHES[older];
+    const held = newer === "refused" ? Number.NEGATIVE_INFINITY : 100 + REACHES[newer];
+    expect(source.done.at(-1)).toBe(aborted === held ? undefined : held > aborted ? "hold" : "abort");
+    expect(urgent.value).toEqual({});
+  });
+});
 
 describe.each(KINDS)("of %s, then %s", (first, last) => {
   it.each(PAIRS)("the older %s and the newer %s: the last one counts", async (older, newer) => {
@@ -125,8 +162,8 @@ describe("a hold, then a resume", () => {
     void resume(M);
     void sendUrgent(M, "hold");
     await pass();
-    expect(source.done.at(-1)).toBe("hold");
-    expect(source.done).toContain("resume");
+    expect(source.done).toEqual(["hold", "hold"]);
+    expect(sent("resume")).toHaveLength(1);
   });
 
   it("ends no order that the mission's other craft may still need", async () => {
@@ -148,7 +185,7 @@ describe("a hold, then a resume", () => {
     await pass(50);
     void resume(M);
     await pass();
-    expect(source.done).toEqual(["hold", "resume", "return"]);
+    expect(source.done).toEqual(["hold", "resume"]);
   });
 });
 
@@ -176,48 +213,89 @@ describe("a hold pressed again", () => {
   });
 });
 
-it("a return pressed again while the answer to the first hangs goes out once that is known", async () => {
-  begin({ return: ["late reply"] });
-  void sendUrgent(M, "return");
+it.each(["abort", "hold", "return", "land"] as const)("%s pressed again while the first hangs goes out at once", async (kind) => {
+  begin({});
+  vi.spyOn(source, "answer");
+  const send = source.send.bind(source);
+  vi.spyOn(source, "send").mockImplementationOnce(async (...order) => {
+    await send(...order);
+    await later(20_000);
+    throw unreachable("no link");
+  });
+  void sendUrgent(M, kind);
+  await pass(1000);
+  void sendUrgent(M, kind);
   await pass(100);
-  vi.setSystemTime(Date.now() + 1000);
-  void sendUrgent(M, "return");
-  await pass();
-  expect(source.done).toEqual(["return", "return"]);
+  expect(sent(kind)).toHaveLength(2);
+  expect(new Set(sent(kind).map(({ press }) => press)).size).toBe(2);
+  await pass(120_000);
+  expect(sent(kind)).toHaveLength(2);
 });
 
-it("an abort that fails again and again repeats a newer hold once", async () => {
+it("goes out every 600 ms for a thumb that keeps tapping", async () => {
+  begin({ hold: Array<Fate>(200).fill("lost") });
+  for (let taps = 0; taps < 20; taps++) {
+    void sendUrgent(M, "hold");
+    await pass(400);
+  }
+  expect(new Set(sent("hold").map(({ commandId }) => commandId)).size).toBe(10);
+});
+
+it("is tried again when the first try hangs, for longer each time", async () => {
+  begin({ hold: Array<Fate>(200).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(120_000);
+  expect(
+    sent("hold")
+      .slice(0, 5)
+      .map(({ timeoutMs }) => timeoutMs),
+  ).toEqual([3000, 6000, 12_000, 20_000, 20_000]);
+});
+
+it("an abort that fails again and again leaves a newer hold alone", async () => {
   begin({ abort: Array<Fate>(200).fill("lost") });
   void sendUrgent(M, "abort");
   await pass(100);
   void sendUrgent(M, "hold");
   await pass(120_000);
-  expect(source.done).toEqual(["hold", "hold"]);
+  expect(source.done).toEqual(["hold"]);
   expect(sent("abort").length).toBeGreaterThan(60);
 });
 
-it("goes out no more over what somebody else has ordered since", async () => {
-  begin({ hold: ["late, reply lost"] });
+it.each([-3_600_000, 120_000])("a clock that is set by %d ms tries no longer than a minute, and takes a second press", async (ms) => {
+  begin({ hold: Array<Fate>(2000).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(1000);
+  vi.setSystemTime(Date.now() + ms);
   void sendUrgent(M, "hold");
   await pass(100);
-  void sendUrgent(M, "return");
-  await pass(50);
-  const told = (seq: number, command: string, command_id: string) =>
-    ({ seq, event: { kind: "command_accepted", command, command_id, by: "" } }) as unknown as Recorded;
-  const own = sent("return")[0]!.commandId;
-  live.value = { ...emptyLive, events: [told(1, "return", own), told(2, "hold", "theirs")] };
-  await pass();
-  expect(source.done).toEqual(["return", "hold"]);
+  expect(new Set(sent("hold").map(({ press }) => press)).size).toBe(2);
+  await pass(61_000);
+  const tries = sent("hold").length;
+  await pass(600_000);
+  expect(sent("hold")).toHaveLength(tries);
 });
 
-it("tells of a repeated hold that is refused", async () => {
-  begin({ return: ["late"], hold: ["at once", "refused"] });
-  void sendUrgent(M, "return");
-  await pass(100);
+/** An entry of the journal. */
+const told = (seq: number, event: object) => ({ seq, event }) as unknown as Recorded;
+const THEIRS = told(2, { kind: "command_accepted", command: "return", command_id: "theirs" });
+const BY_ITSELF = told(2, { kind: "return_ordered", by: null });
+const BEFORE = told(1, { kind: "command_accepted", command: "hold", command_id: "earlier" });
+
+it.each([
+  ["what somebody else has ordered since", [BEFORE, THEIRS], 1],
+  ["what the mission has ordered by itself since", [BEFORE, BY_ITSELF], 1],
+  ["nothing", [BEFORE], 3],
+])("a hold that is lost goes out no more over %s", async (_what, events, tries) => {
+  begin({ hold: ["lost", "lost"] });
+  const mission = { ...emptyLive.mission, missionId: "m" };
+  live.value = { ...emptyLive, mission, events: [BEFORE] };
   void sendUrgent(M, "hold");
+  await pass(100);
+  live.value = { ...emptyLive, mission, events };
   await pass();
-  expect(source.done).toEqual(["hold", "return"]);
-  expect(problems.value.bar).toBeDefined();
+  expect(sent("hold")).toHaveLength(tries);
+  expect(urgent.value).toEqual({});
 });
 
 it("does not resume once control is taken, where something was ordered meanwhile", async () => {
@@ -253,24 +331,24 @@ it("does not bring back what a newer order took the place of that ran out of tri
   expect(problems.value.bar).toBeDefined();
 });
 
-it("says no more that the server does not answer when an order that went out once more got through", async () => {
-  begin({ return: ["late"], hold: ["at once", "lost"] });
-  void sendUrgent(M, "return");
-  await pass(100);
-  void sendUrgent(M, "hold");
-  await pass(400);
-  expect(problems.value.bar).toBeDefined();
-  await pass();
-  expect(source.done).toEqual(["hold", "return", "hold"]);
-  expect(problems.value.bar).toBeUndefined();
-});
-
-it.each([401, 408, 429, 503])("goes on after a %d, which is no refusal", async (status) => {
+it.each([408, 429, 503])("goes on after a %d, which is no refusal", async (status) => {
   begin({ hold: [status] });
   void sendUrgent(M, "hold");
   await pass();
   expect(source.done).toEqual(["hold"]);
   expect(new Set(sent("hold").map(({ commandId }) => commandId)).size).toBe(1);
+});
+
+it("ends with the session: whoever enters next has given no order", async () => {
+  begin({ hold: [401, "lost"], return: ["lost"] });
+  await sendUrgent(M, "hold");
+  expect(problems.value.bar?.status).toBe(401);
+  void sendUrgent(M, "return");
+  connected.value = null;
+  await pass();
+  begin({});
+  await pass();
+  expect(source.sent).toEqual([]);
 });
 
 it("orders of another craft change nothing", async () => {

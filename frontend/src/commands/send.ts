@@ -1,5 +1,6 @@
 // Sending a command and telling what became of it, at the place where it was given.
 import { effect, signal } from "@preact/signals";
+import { newCommandId } from "../sources/api";
 import { RequestFailed, refusal, unreachable } from "../sources/problem";
 import type { Source } from "../sources/source";
 import { source } from "../state/connection";
@@ -31,17 +32,26 @@ export const asProblem = (error: unknown): Problem => asFailure(error).problem;
 const LOOKS = 60;
 const LOOK_MS = 50;
 
-/**
- * When nobody controls the search, whoever orders takes control first: the order is a deliberate act already.
- * isWanted: still, once control is taken.
- */
-export async function steered(from: Source, missionId: string, command: Command, isWanted = () => true): Promise<CommandReply> {
-  const reply = await from.send(missionId, command, undefined, fenceOf(missionId));
+interface Steering {
+  /** Still, once control is taken. */
+  isWanted?: () => boolean;
+  press?: number;
+  newId?: () => string;
+}
+
+/** When nobody controls the search, whoever orders takes control first: the order is a deliberate act already. */
+export async function steered(
+  from: Source,
+  missionId: string,
+  command: Command,
+  { isWanted = () => true, press, newId = newCommandId }: Steering = {},
+): Promise<CommandReply> {
+  const reply = await from.send(missionId, command, { commandId: newId(), press, fence: fenceOf(missionId) });
   if (reply.accepted || reply.reason?.code !== "control_free") return reply;
   const taken = await from.send(missionId, { kind: "take_control" });
   if (!taken.accepted) return taken;
   const fence = await fenceComes(missionId);
-  return isWanted() ? from.send(missionId, command, undefined, fence) : reply;
+  return isWanted() ? from.send(missionId, command, { commandId: newId(), press, fence }) : reply;
 }
 
 /** The change of hands comes as an event, a moment after the answer. */

@@ -1,12 +1,12 @@
-// Abort, hold, return and landing: sent at once, and again under the same id until the server answers. The last one given
-// counts, however the answers come: where an older one may have been carried out after it, it goes out once more.
+// Abort, hold, return and landing: sent at once, and again under the same id until the server answers. Every press has a
+// number: the server carries out none that reaches it after a later one of this page, so that the last one given counts.
 import { signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
-import { isRefusal, refusal } from "../sources/problem";
+import { isRefusal, RequestFailed, refusal } from "../sources/problem";
 import { live, source } from "../state/connection";
 import type { Flown } from "../state/flying";
 import { TAP_MS } from "../state/tap";
-import type { Problem } from "../wire";
+import type { Problem, Recorded } from "../wire";
 import { asProblem, report, steered } from "./send";
 
 export type Urgent = "abort" | "hold" | "return" | "land";
@@ -23,186 +23,167 @@ export interface UrgentState {
 export const urgent = signal<Partial<Record<Urgent, UrgentState>>>({});
 
 const RETRY_MS = 700;
+/** A first try that hangs is followed by one that may take twice as long. */
+const FIRST_TRY_MS = 3000;
+const LONGEST_TRY_MS = 20_000;
 /** By then the server sends a vehicle home whose consoles are gone; later an order would act on one that its giver no longer sees. */
 const GIVE_UP_MS = 60_000;
 const SHOWN_MS = 4000;
 const STEERING: readonly string[] = ["hold", "return", "land", "resume", "abort"];
 
-/** An urgent order, or a resume. */
-interface Given {
-  /** The mission that it goes to, or the craft that flies for none. */
-  to: string;
-  /** What was given later has a greater one; a repeat has its first one's. */
-  n: number;
-}
-
-interface Order extends Given {
+interface Order {
   flown: Flown;
   kind: Urgent;
+  /** The mission that it goes to, or the craft that flies for none. */
+  to: string;
+  press: number;
   commandId: string;
-  pressedMs: number;
+  /** By both clocks: one is set, the other stands still while the machine sleeps. */
+  pressedMs: readonly [number, number];
+  /** What the journal had told by then. */
+  heardSeq: number;
   shown: UrgentState | null;
   /** It is tried no more: something newer counts. */
   isEnded?: boolean;
-  /** It goes out once more when it is accepted: it was pressed again, or an older one may have been carried out after it. */
-  isCrossed?: boolean;
 }
 
 let presses = 0;
+/** By where it went. */
+const lastPress = new Map<string, number>();
+let lastTap: { of: string; atMs: number } | null = null;
 const ownIds = new Set<string>();
-
-/** An abort waits for nothing, and nothing ends it. */
 const underWay = new Set<Order>();
-
-/** By where it went: the last one given of those that were accepted, or that ran out of tries. */
-const settled = new Map<string, Given>();
 
 /** Leaving the page forgets them: the browser asks first. */
 addEventListener("beforeunload", (event) => underWay.size > 0 && event.preventDefault());
 
 const toOf = ({ id, craftId }: Flown): string => id ?? craftId;
 const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to && !order.isEnded);
-const newerThan = (own: Given): Order[] => ordersTo(own.to).filter(({ n }) => n > own.n);
-const lastSettled = (own: Given): Given => settled.get(own.to) ?? { to: own.to, n: 0 };
-
-/** Refused orders do not count. */
-const isLast = (own: Given): boolean => newerThan(own).length === 0 && lastSettled(own).n <= own.n;
+const clocks = (): readonly [number, number] => [Date.now(), performance.now()];
+const isLate = ({ pressedMs }: Order): boolean => clocks().some((now, clock) => now - pressedMs[clock]! > GIVE_UP_MS);
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-const isShown = (order: Order): boolean => order.shown !== null && urgent.peek()[order.kind] === order.shown;
+function newId(): string {
+  const id = newCommandId();
+  ownIds.add(id);
+  return id;
+}
+
+function newPress(to: string): number {
+  presses += 1;
+  lastPress.set(to, presses);
+  return presses;
+}
 
 function show(own: Order, state: UrgentState | null): void {
-  if (!state && !isShown(own)) return;
+  if (!state && (own.shown === null || urgent.peek()[own.kind] !== own.shown)) return;
   const { [own.kind]: _old, ...others } = urgent.value;
   urgent.value = state ? { ...others, [own.kind]: state } : others;
   own.shown = state;
 }
 
 function end(order: Order): void {
-  if (order.kind === "abort") return;
   order.isEnded = true;
   show(order, null);
 }
 
-/** As far as the journal is heard here. */
-function isOvertaken({ commandId }: Order): boolean {
-  const accepted = live.peek().events.flatMap(({ event }) => (event.kind === "command_accepted" ? [event] : []));
-  const at = accepted.findIndex(({ command_id }) => command_id === commandId);
-  return at >= 0 && accepted.slice(at).some(({ command, command_id }) => STEERING.includes(command) && !ownIds.has(command_id));
+/** An abort is never ended by another kind. */
+function endOlder(to: string, press: number): void {
+  for (const order of ordersTo(to)) if (order.press < press && order.kind !== "abort") end(order);
 }
 
-/** A resume never goes out by itself, nor anything over what somebody else has ordered since. */
-function repeat(given: Given | Order): void {
-  if ("kind" in given && !isOvertaken(given)) void give(given.flown, given.kind, given.n, true);
+function isSteering({ event }: Recorded): boolean {
+  if (event.kind === "return_ordered" || event.kind === "land_ordered") return event.by === null;
+  return event.kind === "command_accepted" && STEERING.includes(event.command) && !ownIds.has(event.command_id);
 }
 
-/** It may have been carried out just now. */
-function cross(own: Given): void {
-  const last = lastSettled(own);
-  const newer = newerThan(own);
-  for (const order of newer) order.isCrossed = true;
-  if (last.n > own.n && !newer.some(({ n }) => n === last.n)) repeat(last);
-}
-
-/** What was given before it is not tried again. */
-function settle(own: Given, endsOlder = true): void {
-  cross(own);
-  if (own.n >= lastSettled(own).n) settled.set(own.to, own);
-  if (endsOlder) for (const order of ordersTo(own.to)) if (order.n < own.n) end(order);
+/** Has somebody else, or the mission by itself, ordered something since? As far as the journal is heard here. */
+function isOvertaken({ flown, heardSeq }: Order): boolean {
+  const { mission, events } = live.peek();
+  return mission.missionId === flown.id && events.some((told) => told.seq > heardSeq && isSteering(told));
 }
 
 /** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
 export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
   const to = toOf(flown);
-  const before = ordersTo(to);
-  const alike = before.filter((order) => order.kind === kind);
-  const pressed = alike.find((order) => isShown(order) && (kind === "abort" || newerThan(order).length === 0));
   if (flown.id === null && kind === "abort") return;
-  const n = ++presses;
-  if (pressed) {
-    const isTap = Date.now() - pressed.pressedMs < TAP_MS;
-    pressed.n = n;
-    pressed.pressedMs = Date.now();
-    pressed.isCrossed ||= !isTap && kind !== "abort";
-    // somebody may have resumed while the first one's answer is on its way
-    if (isTap || kind !== "hold") return;
+  const atMs = performance.now();
+  const of = `${kind} ${to}`;
+  if (lastTap?.of === of && atMs - lastTap.atMs < TAP_MS) return; // a thumb's second tap
+  lastTap = { of, atMs };
+  for (const order of ordersTo(to)) {
+    if (order.kind === kind) end(order);
+    else if (kind !== "abort" && order.kind !== "abort") show(order, null);
   }
-  for (const order of alike) end(order);
-  for (const order of before) if (kind !== "abort" && order.kind !== "abort") show(order, null);
   report("bar", null);
-  await give(flown, kind, n);
+  await give(flown, kind);
 }
 
 /** Of one craft, sent once: not again after taking control, if anything was ordered meanwhile. */
 export async function resume(flown: Flown): Promise<void> {
   const { id, craftId } = flown;
-  const own: Given = { to: toOf(flown), n: ++presses };
+  const to = toOf(flown);
+  const press = newPress(to);
+  lastTap = null;
+  const isLast = () => lastPress.get(to) === press;
   let problem: Problem;
   report("bar", null);
   try {
     const from = source.peek()!;
     const crafts = live.peek().status?.value.crafts.filter(({ mission_id }) => mission_id === id) ?? [];
     const reply = await (id !== null
-      ? steered(from, id, { kind: "resume", craft_id: craftId }, () => isLast(own))
-      : from.order(craftId, { kind: "resume" }));
+      ? steered(from, id, { kind: "resume", craft_id: craftId }, { isWanted: isLast, press, newId })
+      : from.order(craftId, { kind: "resume" }, { press }));
     if (reply.accepted) {
       // what was ordered before may still be due to the mission's other crafts
-      settle(own, id === null || crafts.length < 2);
+      if (id === null || crafts.length < 2) endOlder(to, press);
       return;
     }
     problem = refusal(reply.reason);
   } catch (error) {
-    if (!isRefusal(error)) cross(own);
     problem = asProblem(error);
   }
-  if (isLast(own)) report("bar", problem);
+  if (isLast()) report("bar", problem);
 }
 
-async function give(flown: Flown, kind: Urgent, n: number, isRepeat = false): Promise<void> {
+/** Somebody who enters after a session has ended has given no order. */
+const isFinal = (error: unknown): boolean => isRefusal(error) || (error instanceof RequestFailed && error.problem.status === 401);
+
+async function give(flown: Flown, kind: Urgent): Promise<void> {
   const { id, craftId } = flown;
-  const commandId = newCommandId();
-  const own: Order = { flown, kind, n, to: toOf(flown), commandId, pressedMs: Date.now(), shown: null };
-  ownIds.add(commandId);
+  const to = toOf(flown);
+  const press = newPress(to);
+  const { mission, events } = live.peek();
+  const heardSeq = mission.missionId === id ? (events.at(-1)?.seq ?? 0) : Number.POSITIVE_INFINITY;
+  const own: Order = { flown, kind, to, press, commandId: newId(), pressedMs: clocks(), heardSeq, shown: null };
   underWay.add(own);
-  for (let tries = 0; !own.isEnded; ) {
-    const isLate = Date.now() - own.pressedMs > GIVE_UP_MS;
+  for (let tries = 0; !own.isEnded && !isLate(own); ) {
     // an abort may be refused where a hold is not: only another kind is waited for
-    if (kind !== "abort" && newerThan(own).some((order) => order.kind !== "abort")) {
+    if (kind !== "abort" && ordersTo(to).some((order) => order.press > press && order.kind !== "abort")) {
       show(own, null);
-      if (isLate) break;
       await pause(RETRY_MS);
       continue;
     }
-    if (isLate) {
-      (kind === "abort" ? cross : settle)(own);
-      break;
-    }
+    const from = source.peek();
+    if (!from || (tries > 0 && kind !== "abort" && isOvertaken(own))) break;
     show(own, { stage: tries === 0 ? "sending" : "retrying", count: tries });
+    const sending = { commandId: own.commandId, press, timeoutMs: Math.min(FIRST_TRY_MS * 2 ** tries, LONGEST_TRY_MS) };
     tries += 1;
     try {
-      const from = source.peek()!;
-      const reply = await (id !== null
-        ? from.send(id, { kind }, commandId)
-        : from.order(craftId, { kind: kind as InNoMission }, commandId));
-      if (reply.accepted) {
-        underWay.delete(own);
-        settle(own);
-      }
-      if (own.isEnded) break;
-      // a repeated return or landing may be refused as done already
-      report("bar", reply.accepted || (isRepeat && kind !== "hold") ? null : refusal(reply.reason));
+      const reply = await (id !== null ? from.send(id, { kind }, sending) : from.order(craftId, { kind: kind as InNoMission }, sending));
+      if (reply.accepted) endOlder(to, press);
+      if (own.isEnded || reply.reason?.code === "later_order_counts") break;
+      report("bar", reply.accepted ? null : refusal(reply.reason));
       if (!reply.accepted) break;
-      if (own.isCrossed && settled.get(own.to) === own) repeat(own);
+      underWay.delete(own);
       show(own, { stage: "accepted", count: tries - 1 });
       await pause(SHOWN_MS);
       break;
     } catch (error) {
-      // an abort is tried on: what becomes of it shows then
-      if (kind !== "abort" && !isRefusal(error)) cross(own);
       if (own.isEnded) break;
       report("bar", asProblem(error));
-      if (isRefusal(error)) break;
+      if (isFinal(error)) break;
       await pause(RETRY_MS);
     }
   }

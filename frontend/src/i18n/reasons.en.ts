@@ -820,6 +820,7 @@ export const reasonsEn: ReasonTable = {
   already_started: ["The mission has started already.", "Draft a new one to fly again."],
   mission_over: ["The mission has ended.", "Draft a new one."],
   not_held: ["The mission is not held.", "To go on from here, hold it first."],
+  later_order_counts: ["An order that was given later on the same page has been accepted already."],
   no_countdown: ["Nothing counts down: the countdown is over, or was stopped before."],
   landing_already: ["The vehicle is landing at home already.", "Hold stops the landing."],
   on_the_way_home: ["The vehicle is on its way home.", "Hold and resume first, to go on searching."],

@@ -57,8 +57,10 @@ const show = (next: FakeSource, ...messages: SourceMessage[]) =>
     vi.advanceTimersByTime(200);
   });
 
+let begun = 0;
 beforeEach(() => {
   vi.useFakeTimers();
+  vi.advanceTimersByTime(60_000 * ++begun);
   nowMs.value = performance.now(); // the test before may have gone on into the future
   act(() => render(<SafetyBar />, document.body));
 });
@@ -79,9 +81,8 @@ const COMMANDS = [
 function sentByAll(): string[] {
   for (const [kind, code] of COMMANDS) {
     act(() => part(kind)!.click());
-    urgent.value = {};
+    act(() => void vi.advanceTimersByTime(1000)); // sooner, it would be a second tap
     act(() => void press(code));
-    urgent.value = {};
   }
   return source.sent.map(({ missionId, kind }) => `${missionId} ${kind}`);
 }

@@ -115,19 +115,33 @@ export const track = (id: string, craftId: string) => json<Track>(`${missionPath
 /** Where a file of the mission can be fetched from. */
 export const exportAddress = (id: string, format: ExportFormat) => `/api${missionPath(id)}/export/${format}`;
 
-export const sendCommand = (
-  id: string,
-  command: Command,
-  commandId = newCommandId(),
-  fence: number | null = null,
-): Promise<CommandReply> => {
-  const body: CommandRequest = { command_id: commandId, command, fence };
-  return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body));
+const PAGE = newCommandId();
+
+/** How an order goes out. */
+export interface Sending {
+  /** Given again, it means the same order again: carried out once. */
+  commandId?: string;
+  /** Of the control lease. */
+  fence?: number | null;
+  /** Its number on this page: after a later one it comes too late. */
+  press?: number | undefined;
+  timeoutMs?: number;
+}
+
+const asked = ({ commandId = newCommandId(), fence = null, press }: Sending) => ({
+  command_id: commandId,
+  fence,
+  press: press === undefined ? null : { page: PAGE, number: press },
+});
+
+export const sendCommand = (id: string, command: Command, sending: Sending = {}): Promise<CommandReply> => {
+  const body: CommandRequest = { ...asked(sending), command };
+  return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body), sending.timeoutMs);
 };
 
-export const orderCraft = (craftId: string, command: CraftCommand, commandId = newCommandId()): Promise<CommandReply> => {
-  const body: CraftRequest = { command_id: commandId, command, fence: null };
-  return json<CommandReply>(`/crafts/${encodeURIComponent(craftId)}/commands`, withBody("POST", body));
+export const orderCraft = (craftId: string, command: CraftCommand, sending: Sending = {}): Promise<CommandReply> => {
+  const body: CraftRequest = { ...asked(sending), command };
+  return json<CommandReply>(`/crafts/${encodeURIComponent(craftId)}/commands`, withBody("POST", body), sending.timeoutMs);
 };
 
 export const areaOutlook = (id: string, search: SearchArea, signal?: AbortSignal) =>

@@ -92,7 +92,7 @@ describe("the recorded example", () => {
     const ownTimes = said.flatMap(([, m]) => (typeof m === "object" && m.type === "telemetry" ? [m.at_utc] : []));
     tellFromServer(someTelemetry({ at_utc: "2031-01-01T00:00:00Z" }));
     expect(fold(heard).telemetry.get(CRAFT)?.value.at_utc, "by its own clock").toBe(ownTimes.at(-1));
-    await source.send("real", { kind: "abort" }, "c");
-    expect(sent.mock.calls).toEqual([["real", { kind: "abort" }, "c", undefined]]);
+    await source.send("real", { kind: "abort" }, { commandId: "c" });
+    expect(sent.mock.calls).toEqual([["real", { kind: "abort" }, { commandId: "c" }]]);
   });
 });

@@ -107,8 +107,8 @@ export class ExampleSource implements Source {
   }
   order = api.orderCraft;
   /** The recorded mission takes no commands; one that flies meanwhile does. */
-  async send(missionId: string, command: Command, commandId?: string, fence?: number | null): Promise<CommandReply> {
-    return missionId === EXAMPLE_ID ? refuse() : api.sendCommand(missionId, command, commandId, fence);
+  async send(missionId: string, command: Command, sending?: api.Sending): Promise<CommandReply> {
+    return missionId === EXAMPLE_ID ? refuse() : api.sendCommand(missionId, command, sending);
   }
   async preflight(): Promise<PreflightReply> {
     return refuse();

@@ -1,5 +1,6 @@
 // A source for tests: passes on what it is given, keeps what it is sent, and answers as the test chose.
 import type { Command, CommandReply, CraftCommand } from "../wire";
+import type { Sending } from "./api";
 import type { Source, SourceMessage } from "./source";
 
 export const accepted: CommandReply = { command_id: "", accepted: true, reason: null, seq: 1 };
@@ -8,7 +9,12 @@ export class FakeSource implements Source {
   readonly happensNow: boolean = true;
   readonly takesCommands: boolean = true;
   readonly keptByServer: boolean = true;
-  readonly sent: { missionId: string; kind: Command["kind"]; commandId: string; craftId?: string | null }[] = [];
+  readonly sent: (Pick<Sending, "press" | "timeoutMs"> & {
+    missionId: string;
+    kind: Command["kind"];
+    commandId: string;
+    craftId?: string | null;
+  })[] = [];
   answer: () => Promise<CommandReply> = () => Promise.resolve(accepted);
   stopped = false;
   private listener: (message: SourceMessage) => void = () => undefined;
@@ -24,13 +30,13 @@ export class FakeSource implements Source {
   tell(...messages: SourceMessage[]): void {
     for (const message of messages) this.listener(message);
   }
-  send(missionId: string, command: Command, commandId = ""): Promise<CommandReply> {
+  send(missionId: string, command: Command, { commandId = "", press, timeoutMs }: Sending = {}): Promise<CommandReply> {
     const craft = "craft_id" in command ? { craftId: command.craft_id } : {};
-    this.sent.push({ missionId, kind: command.kind, commandId, ...craft });
+    this.sent.push({ missionId, kind: command.kind, commandId, press, ...(timeoutMs && { timeoutMs }), ...craft });
     return this.answer();
   }
-  order(craftId: string, { kind }: CraftCommand, commandId = ""): Promise<CommandReply> {
-    this.sent.push({ missionId: `craft ${craftId}`, kind, commandId });
+  order(craftId: string, { kind }: CraftCommand, { commandId = "", press }: Sending = {}): Promise<CommandReply> {
+    this.sent.push({ missionId: `craft ${craftId}`, kind, commandId, press });
     return this.answer();
   }
   belief: Source["belief"] = () => Promise.resolve(null);

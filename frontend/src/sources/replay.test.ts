@@ -65,8 +65,8 @@ describe("a recording", () => {
     const { missionId } = replay;
     await expect(replay.send(missionId, { kind: "accept" })).rejects.toBeInstanceOf(RequestFailed);
     expect(sent).not.toHaveBeenCalled();
-    await replay.send(missionId, { kind: "abort" }, "c");
-    await replay.send("another", { kind: "resume" }, "d");
+    await replay.send(missionId, { kind: "abort" }, { commandId: "c" });
+    await replay.send("another", { kind: "resume" }, { commandId: "d" });
     expect(sent.mock.calls.map(([id, command]) => [id, command.kind])).toEqual([
       [missionId, "abort"],
       ["another", "resume"],

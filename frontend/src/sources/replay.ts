@@ -58,9 +58,9 @@ export class ReplaySource implements Source {
   }
   order = api.orderCraft;
   /** The recorded mission takes no commands; one that flies meanwhile does, and the orders of the bar always go out. */
-  async send(missionId: string, command: Command, commandId?: string, fence?: number | null): Promise<CommandReply> {
+  async send(missionId: string, command: Command, sending?: api.Sending): Promise<CommandReply> {
     const urgent = ["abort", "hold", "return", "land"].includes(command.kind);
-    return urgent || missionId !== this.missionId ? api.sendCommand(missionId, command, commandId, fence) : refuse();
+    return urgent || missionId !== this.missionId ? api.sendCommand(missionId, command, sending) : refuse();
   }
   async preflight(): Promise<PreflightReply> {
     return refuse();

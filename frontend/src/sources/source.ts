@@ -1,6 +1,7 @@
 // Where the picture comes from. Panels see messages and cannot tell a live mission from a recording.
 import type { AreaImport, Command, CommandReply, CraftCommand, ExpectedTime, LiveMessage, Place, PreflightReply, Track } from "../wire";
 import type { BeliefFrame } from "../wire/beliefFrame";
+import type { Sending } from "./api";
 
 export interface BeliefMessage {
   type: "belief";
@@ -37,10 +38,9 @@ export interface Source {
   readonly keptByServer: boolean;
   start(listener: (message: SourceMessage) => void): void;
   stop(): void;
-  /** `commandId` given again means the same command again: it is carried out once. fence: of the control lease. */
-  send(missionId: string, command: Command, commandId?: string, fence?: number | null): Promise<CommandReply>;
+  send(missionId: string, command: Command, sending?: Sending): Promise<CommandReply>;
   /** To a craft in the air that flies for no mission. */
-  order(craftId: string, command: CraftCommand, commandId?: string): Promise<CommandReply>;
+  order(craftId: string, command: CraftCommand, sending?: Sending): Promise<CommandReply>;
   /** The belief about an emitter that stood at the event `seq`; null when it is not to be had. */
   belief(missionId: string, emitterId: string, seq: number): Promise<BeliefFrame | null>;
   track(missionId: string, craftId: string): Promise<Track>;

@@ -101,6 +101,7 @@ export const safety = {
   no_home: ["Der Startplatz des Fluggeräts ist noch nicht bekannt.", "Auf GPS warten."],
   another_mission_flies: ["Eine andere Mission fliegt noch: {name}.", "Sie beenden und das Fluggerät zuerst landen lassen."],
   no_mission: ["Es gibt keine Mission {mission_id}.", "In der Liste der Missionen nachsehen."],
+  later_order_counts: ["Ein Befehl, der auf derselben Seite später gegeben wurde, ist schon angenommen."],
   not_editable: [
     "Die Mission ist gestartet und lässt sich nicht mehr bearbeiten.",
     "Während sie hält, ihr Suchgebiet ändern, oder eine neue Mission entwerfen.",
