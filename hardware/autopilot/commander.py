@@ -41,6 +41,14 @@ class CommandDenied(VehicleError):
         self.refusal = reason
 
 
+class CommandLost(VehicleError):
+    """No answer came, however often it was sent. It may have been carried out."""
+
+    def __init__(self, reason: CommandUnanswered) -> None:
+        super().__init__(reason)
+        self.unanswered = reason
+
+
 class OutOfMode(VehicleError):
     """Nothing was sent: the vehicle is not in the mode in which it obeys the command, though nobody took it."""
 
@@ -121,7 +129,7 @@ class Commander:
         One that changes the mode goes right after the vehicle's own word of its mode: sent blindly, it would undo a
         pilot's switch; and not again once its mode shows, though its answer got lost. Any other goes only while the
         vehicle is in one of `modes`.
-        Raises CommandDenied, OutOfMode, NotInControl, ManoeuvreSuperseded, VehicleError (no answer).
+        Raises CommandDenied, OutOfMode, NotInControl, ManoeuvreSuperseded, CommandLost.
         """
 
         def allowed() -> bool:
@@ -151,7 +159,7 @@ class Commander:
                 return
             if attempt < ATTEMPTS:
                 self._announce(TriedAgain(CommandUnanswered(command, attempt), attempt + 1))
-        raise VehicleError(CommandUnanswered(command, ATTEMPTS))
+        raise CommandLost(CommandUnanswered(command, ATTEMPTS))
 
     async def ask(self, outgoing: Outgoing) -> bool:
         """Send a command that moves nothing (telemetry rates); True when accepted. Anybody may have control."""

@@ -57,25 +57,23 @@ async def hold(guidance: Guidance) -> None:
 async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> bool:
     """True when it came to rest, or at least obeys; False when it does not."""
     monitor, dialect, snapshot = guidance.monitor, guidance.monitor.dialect, guidance.monitor.snapshot
-    highest_m_s = snapshot.speed_m_s or 0.0
-    fast = highest_m_s > NEVER_FAST_M_S
+    snapshot.fastest_m_s = snapshot.speed_m_s or 0.0
     await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
     brakes = Deadline(monitor.clock, BRAKES_S, BRAKES_WALL_S)
     rests = Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S)
-    if fast and dialect.hold_turns_nose:
+    if snapshot.fastest_m_s > NEVER_FAST_M_S and dialect.hold_turns_nose:
         await _keep_nose(guidance, manoeuvre)
     hover, hovers = Hover(), False
 
     def obeys() -> bool:
-        slower = (snapshot.speed_m_s or 0.0) <= max(NEVER_FAST_M_S, SLOWER * highest_m_s)
+        slower = (snapshot.speed_m_s or 0.0) <= max(NEVER_FAST_M_S, SLOWER * snapshot.fastest_m_s)
         return slower and snapshot.custom_mode in dialect.hold_modes
 
     def nearly_rests() -> bool:
         return obeys() and snapshot.speed_m_s is not None and snapshot.speed_m_s < STAYS_M_S
 
     def decided() -> bool:
-        nonlocal hovers, highest_m_s
-        highest_m_s = max(highest_m_s, snapshot.speed_m_s or 0.0)
+        nonlocal hovers
         if snapshot.position is not None and snapshot.position_at_s is not None:
             in_mode = snapshot.custom_mode in dialect.hold_modes
             hovers = hover.see(snapshot.position, snapshot.speed_m_s, snapshot.position_at_s, in_mode)

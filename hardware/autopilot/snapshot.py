@@ -68,6 +68,8 @@ class Snapshot:
     altitude_amsl_m: float | None = None
     altitude_relative_m: float | None = None
     velocity_ned: tuple[float, float, float] | None = None
+    fastest_m_s: float = 0.0
+    """Since a hold was ordered, which begins with the speed of then."""
     heading_deg: float | None = None
     heading_at_s: float | None = None
     attitude_heard_at_s: float | None = None
@@ -191,6 +193,7 @@ class Snapshot:
         self.position_at_s = self._boot_clock.to_utc(boot_s, heard_at_s)
         self.altitude_amsl_m, self.altitude_relative_m = fields["alt"] / 1e3, fields["relative_alt"] / 1e3
         self.velocity_ned = (fields["vx"] / 100.0, fields["vy"] / 100.0, fields["vz"] / 100.0)
+        self.fastest_m_s = max(self.fastest_m_s, math.hypot(*self.velocity_ned))
 
     def _jump(self, place: Place, boot_s: float) -> None:
         """A position so far from the last one that no vehicle could have flown there is a jump.

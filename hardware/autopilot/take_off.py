@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from hardware.authority import FlightEnded
-from hardware.autopilot.commander import CommandDenied, Manoeuvre, OutOfMode
+from hardware.autopilot.commander import CommandDenied, CommandLost, Manoeuvre, OutOfMode
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.messages import arm
 from hardware.deadline import Deadline
 from hardware.ports import VehicleError
-from hardware.reasons.vehicle import AutopilotRefused, ClimbTooLow, NoTakeOff, TakeOffIgnored
+from hardware.reasons.vehicle import AutopilotRefused, ClimbTooLow, CommandUnanswered, NoTakeOff, TakeOffIgnored
 from hardware.reasons.vehicle_news import TriedAgain
 
 LEAVE_GROUND_S = 60.0
@@ -21,11 +21,9 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
     """Returns once the vehicle hovers there. Raises VehicleError with the last trouble when it does not."""
     monitor = guidance.monitor
     snapshot, dialect = monitor.snapshot, monitor.dialect
-    amsl = guidance.here()[1]
-    target_amsl = amsl + altitude_relative_m - (snapshot.altitude_relative_m or 0.0)
     manoeuvre = guidance.begin("take_off")
     try:
-        await _leave_ground(guidance, manoeuvre, altitude_relative_m, target_amsl)
+        await _leave_ground(guidance, manoeuvre, altitude_relative_m)
     finally:
         if snapshot.disarmed:
             monitor.control.see(FlightEnded())
@@ -37,24 +35,30 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
         settled = snapshot.custom_mode in dialect.settled_modes
         return up is not None and up > altitude_relative_m - slack and level and settled
 
-    if not await guidance.until(manoeuvre, Deadline(monitor.clock, 30.0 + altitude_relative_m / 0.5), climbed):
-        up = snapshot.altitude_relative_m or 0.0
-        raise VehicleError(ClimbTooLow(up, altitude_relative_m))
-    guidance.spot = (guidance.here()[0], target_amsl)
+    deadline = Deadline(monitor.clock, 30.0 + altitude_relative_m / 0.5)
+    await guidance.until(manoeuvre, deadline, lambda: climbed() or snapshot.disarmed)
+    if not climbed():
+        raise VehicleError(ClimbTooLow(snapshot.altitude_relative_m or 0.0, altitude_relative_m))
+    guidance.spot = (guidance.here()[0], _amsl_of(guidance, altitude_relative_m))
 
 
-async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: float, amsl_m: float) -> None:
+def _amsl_of(guidance: Guidance, relative_m: float) -> float:
+    """As home is now: arming sets it to where the vehicle stands."""
+    return guidance.here()[1] + relative_m - (guidance.monitor.snapshot.altitude_relative_m or 0.0)
+
+
+async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: float) -> None:
     monitor = guidance.monitor
     snapshot, dialect, clock = monitor.snapshot, monitor.dialect, monitor.clock
 
-    stood_m = snapshot.altitude_relative_m or 0.0
+    stood_amsl_m = guidance.here()[1]
 
     def rising() -> bool:
-        up = snapshot.altitude_relative_m
-        return bool(snapshot.armed) and up is not None and up - stood_m > min(1.0, 0.5 * (relative_m - stood_m))
+        enough = min(1.0, 0.5 * (_amsl_of(guidance, relative_m) - stood_amsl_m))
+        return bool(snapshot.armed) and guidance.here()[1] - stood_amsl_m > enough
 
     deadline, attempt = Deadline(clock, LEAVE_GROUND_S, 5.0), 1
-    trouble: AutopilotRefused | TakeOffIgnored = TakeOffIgnored()
+    trouble: AutopilotRefused | CommandUnanswered | TakeOffIgnored = TakeOffIgnored()
     while not deadline.passed:
         began_s = clock.now()
         try:
@@ -63,7 +67,8 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
             if not snapshot.armed:
                 await guidance.send(manoeuvre, arm(), dialect.take_off_modes, "arming")
                 snapshot.arming_at_s = clock.now()
-            take_off = dialect.take_off(relative_m, amsl_m)
+                stood_amsl_m = guidance.here()[1]
+            take_off = dialect.take_off(relative_m, _amsl_of(guidance, relative_m))
             await guidance.send(manoeuvre, take_off, dialect.take_off_modes, "take_off")
             if await guidance.until(manoeuvre, Deadline(clock, 10.0, 2.0), rising):
                 return
@@ -72,9 +77,11 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
             trouble = TakeOffIgnored()
         except CommandDenied as denied:
             trouble = denied.refusal
+        except CommandLost as lost:
+            trouble = lost.unanswered
         attempt += 1
         if await guidance.until(manoeuvre, Deadline(clock, 2.0, 0.2), rising):
-            return  # in the air an autopilot refuses the order whose answer was lost before
+            return  # the order whose answer was lost was carried out; in the air an autopilot refuses it
         if isinstance(trouble, AutopilotRefused):  # why comes as a text, a moment after the answer
             trouble = replace(trouble, said=" / ".join(monitor.said_since(began_s)[-MOST_SAID:]))
         monitor.announce(TriedAgain(trouble, attempt))

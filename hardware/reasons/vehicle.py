@@ -257,7 +257,7 @@ class TakeOffIgnored:
 @dataclass(frozen=True, slots=True)
 class NoTakeOff:
     waited_s: float
-    because: AutopilotRefused | TakeOffIgnored
+    because: AutopilotRefused | CommandUnanswered | TakeOffIgnored
     code: Literal["no_take_off"] = "no_take_off"
 
     english: ClassVar[Words] = Words("No take-off within {waited_s}. {because}", "{because!remedy}")

@@ -72,8 +72,10 @@ class Faults:
     silent: int = 0
     unanswered: int = 0
     """Obeyed, but their acknowledgements get lost."""
-    unanswered_of: int = 0
-    """Of this MAV_CMD only; 0: of any."""
+    only: int = 0
+    """What is refused or unanswered is this MAV_CMD; 0: any."""
+    home_m: float = 0.0
+    """Above where home is taken to be, until arming sets it to where the vehicle stands: a barometer drifts."""
     link_lost_until: float = -1.0
     link_delay: float = 0.0
     """Seconds each way."""
@@ -200,14 +202,15 @@ class Firmware(ABC):
         if faults.silent > 0:
             faults.silent -= 1
             return None
-        if faults.refuse > 0:
+        concerned = faults.only in (0, command.number)
+        if faults.refuse > 0 and concerned:
             faults.refuse -= 1
             return DENIED
         if faults.ignore_all > 0:
             faults.ignore_all -= 1
             return ACCEPTED
         result = self.carry_out(command)
-        if faults.unanswered > 0 and faults.unanswered_of in (0, command.number):
+        if faults.unanswered > 0 and concerned:
             faults.unanswered -= 1
             return None
         return result
@@ -252,6 +255,7 @@ class Firmware(ABC):
             return TEMPORARILY_REJECTED
         if not self.flight.armed:
             self.flight.arm()
+            self.faults.home_m = 0.0
             self._armed_at = self.time
         return ACCEPTED
 

@@ -12,7 +12,8 @@
     {"do": "battery", "percent": 15}
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
     {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent"
-     | "unanswered", "count": 1, "of": 0}   of: unanswered are those of this MAV_CMD only
+     | "unanswered", "count": 1, "of": 0}   of: refused or unanswered are those of this MAV_CMD only
+    {"do": "home_drift", "up_m": -3}          so high it says it is above home, until arming sets home anew
     {"do": "prearm", "ok": false}
     {"do": "say", "text": "", "severity": 2, "lost": []}   a STATUSTEXT, its lost chunks left out; "hex" for any bytes
     {"do": "fence_fault", "mute": 0, "deaf_after": -1, "altered": false}   see firmware.Faults; as given, all at once
@@ -137,7 +138,9 @@ class Orders:
                         f"There is no fault {kind!r}: refuse, ignore_yaw, ignore_goto, ignore_all, silent, unanswered."
                     )
                 setattr(faults, kind, int(_number(order, "count", 1)))
-                faults.unanswered_of = int(_number(order, "of", 0))
+                faults.only = int(_number(order, "of", 0))
+            case "home_drift":
+                faults.home_m = _number(order, "up_m", 0.0)
             case "truth":
                 return self._truth()
             case "commands":

@@ -119,7 +119,7 @@ def global_position_int(firmware: Firmware) -> Message:
         lat,
         lon,
         round((firmware.home.amsl_m + up) * 1000),
-        round(up * 1000),
+        round((up + firmware.faults.home_m) * 1000),
         round(copter.v_north * 100),
         round(copter.v_east * 100),
         round(-copter.v_up * 100),

@@ -142,3 +142,23 @@ async def test_an_order_of_the_nose_that_was_lost_is_repeated_with_the_heading_o
     assert len(flying.link.sent) == 3
     await moves(flying, 0.1, SETTLED_S + 0.5)
     await asyncio.wait_for(ordered, 1.0)
+
+
+async def test_a_vehicle_that_gets_faster_until_the_hold_arrives_is_told_to_keep_its_nose(flying: Scene) -> None:
+    """Over a slow link 1.5 m/s were known when 4 were flown: the nose swung by 147 degrees, and a vehicle that braked
+    was ordered to hold once more."""
+    flying.hear("ATTITUDE", {"time_boot_ms": 1, "roll": 0.0, "pitch": 0.0, "yaw": 2.0, "yawspeed": 0.5})
+    flying.mode(HOLD)
+    await moves(flying, 1.5)
+    flying.link.answers = False
+    ordered = asyncio.create_task(hold(Guidance(flying.monitor)))
+    await asyncio.sleep(0)  # it knows of 1.5 m/s
+    await moves(flying, 4.0)
+    flying.monitor.commander.acknowledged({"command": REPOSITION, "result": 0})
+    flying.link.answers = True
+    await moves(flying, 3.0, TAKEN_S + 0.2)
+    assert [fields["param4"] for fields in flying.link.fields if fields["command"] == REPOSITION][1:] == [2.0]
+    await moves(flying, 2.3, BRAKES_S + 0.3)
+    assert len(flying.link.sent) == 2, "slower than six tenths of its fastest"
+    await moves(flying, 0.1, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)

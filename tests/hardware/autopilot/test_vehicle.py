@@ -219,14 +219,29 @@ async def test_take_off_waits_out_an_autopilot_that_is_not_ready_and_says_so(px4
     assert px4.vehicle.telemetry().in_air
 
 
-async def test_a_take_off_whose_answer_was_lost_is_no_failure(rig: Rig) -> None:
-    """In the air ArduCopter refuses the repeated order: it hovered for a minute, and was said not to have left."""
-    await rig.sim.order("fault", kind="unanswered", count=1, of=TAKE_OFF)
+@pytest.mark.parametrize("lost", [1, 3])
+async def test_a_take_off_whose_answer_was_lost_is_no_failure(rig: Rig, lost: int) -> None:
+    """In the air ArduCopter refuses the repeated order: it hovered for a minute, and was said not to have left. After
+    three lost answers it was braked a metre above the ground."""
+    await rig.sim.order("fault", kind="unanswered", count=lost, of=TAKE_OFF)
     await asyncio.wait_for(rig.vehicle.take_off(10.0), 60)
 
     assert rig.vehicle.telemetry().in_air
     sent = (await rig.sim.order("commands", since_s=0.0))["commands"]
-    assert [number for _, number in sent].count(TAKE_OFF) <= 2
+    assert [number for _, number in sent].count(TAKE_OFF) <= max(lost, 2)
+
+
+@pytest.mark.parametrize("drift_m", [-3.0, 15.0])
+async def test_a_take_off_refused_on_the_ground_is_ordered_again_wherever_home_was_before(
+    rig: Rig, drift_m: float
+) -> None:
+    """Arming sets home: the step of the relative height was taken for a climb, or hid the climb."""
+    await rig.sim.order("home_drift", up_m=drift_m)
+    await rig.sim.order("fault", kind="refuse", count=1, of=TAKE_OFF)
+    await asyncio.wait_for(rig.vehicle.take_off(10.0), 60)
+
+    truth = await rig.sim.order("truth")
+    assert truth["altitude_relative_m"] == pytest.approx(10.0, abs=1.0)
 
 
 async def test_a_pilot_who_selects_a_mode_on_the_ground_ends_the_take_off(px4: Rig) -> None:
