@@ -7,6 +7,7 @@ import sqlite3
 import subprocess
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -277,6 +278,18 @@ def test_a_flight_whose_facts_cannot_be_stored_says_so_and_is_held_all_the_same(
         assert len(held) == 1, "it waited in memory, and is stored once"
 
 
+@contextmanager
+def kept_down(screen: Screen, *keys: str) -> Iterator[None]:
+    """The last one repeats for two seconds, as a held key does."""
+    keyboard = screen.page.keyboard
+    for key in (*keys, *keys[-1:] * 20):
+        keyboard.down(key)
+        screen.page.wait_for_timeout(100)
+    yield
+    for key in keys:
+        keyboard.up(key)
+
+
 @pytest.mark.long
 def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen: OpenScreen) -> None:
     screen = open_screen(server, f"#/mission/{server.draft()}")
@@ -301,10 +314,14 @@ def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen:
     expect(screen.part("key-sheet")).to_have_count(0)
     keyboard.press("Alt+Shift+A")
     screen.expect_phase("aborted")
-    keyboard.press("Alt+Shift+H")
-    expect(screen.row("hold_ordered")).to_have_count(2)
+    with kept_down(screen, "Alt", "Shift", "H"):
+        expect(screen.row("hold_ordered")).to_have_count(2)
+    screen.part("hold").focus()
+    with kept_down(screen, "Enter"):
+        expect(screen.row("hold_ordered")).to_have_count(3)
     keyboard.press("Alt+Shift+R")
     expect(screen.row("return_ordered")).to_be_visible()
+    expect(screen.row("hold_ordered")).to_have_count(3)
     vehicle_comes_down(server)
 
 

@@ -13,6 +13,11 @@ const typing = (target: EventTarget | null) =>
 
 function onKeyDown(event: KeyboardEvent): void {
   const chord = event.altKey && event.shiftKey && !event.ctrlKey ? CHORDS[event.code] : undefined;
+  if (event.repeat) {
+    // a key that is kept down orders once; Enter would press its button again and again
+    if (chord || (event.key === "Enter" && !typing(event.target))) event.preventDefault();
+    return;
+  }
   if (chord) {
     event.preventDefault();
     const target = flying.peek();

@@ -21,7 +21,7 @@ import { SafetyBar } from "./SafetyBar";
 watchKeys();
 
 const part = (testId: string) => document.querySelector<HTMLButtonElement>(`[data-testid=${testId}]`);
-const press = (code: string) => dispatchEvent(new KeyboardEvent("keydown", { code, altKey: true, shiftKey: true }));
+const press = (code: string, repeat = false) => dispatchEvent(new KeyboardEvent("keydown", { code, altKey: true, shiftKey: true, repeat }));
 const drafted: MissionEvent = { kind: "mission_drafted", spec: someSpec() };
 const happens = (...events: MissionEvent[]): SourceMessage[] => record(...events).map((recorded) => ({ type: "event", recorded }));
 const inPhase = (after: Phase) => happens(drafted, phase(after));
@@ -126,6 +126,27 @@ describe("abort, hold and return", () => {
     show(new FakeSource(), ...happens(drafted, ready), someTelemetry({ in_air: false }), craftStatus({}));
     for (const [kind] of COMMANDS) expect(part(kind)!.disabled).toBe(true);
     expect(sentByAll()).toEqual([]);
+  });
+});
+
+describe("a key that is kept down", () => {
+  it("orders once by its chord", async () => {
+    show(new FakeSource(), ...inPhase("flying"), someTelemetry());
+    act(() => void press("KeyH"));
+    for (let times = 0; times < 60; times++) {
+      act(() => void press("KeyH", true));
+      await act(async () => void (await vi.advanceTimersByTimeAsync(33)));
+    }
+    expect(source.sent).toHaveLength(1);
+  });
+
+  it("presses a button once, and goes on making lines where one writes", () => {
+    show(new FakeSource(), ...inPhase("flying"), someTelemetry());
+    const text = document.body.appendChild(document.createElement("textarea"));
+    const enter = (target: HTMLElement, repeat: boolean) =>
+      target.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", repeat, bubbles: true, cancelable: true }));
+    expect([enter(part("hold")!, false), enter(part("hold")!, true), enter(text, true)]).toEqual([true, false, true]);
+    text.remove();
   });
 });
 
