@@ -232,6 +232,29 @@ it("asks for a slide no more once what it was for has gone away, and does not co
   expect(part("land")).not.toBeNull();
 });
 
+it.each(["mission", "vehicle"])("asks for a slide anew once another %s is meant", async (what) => {
+  const one = { craft_id: "a", mission_id: "mA", phase: "hold" } as const;
+  const other = { ...one, ...(what === "mission" ? { mission_id: "mB" } : { craft_id: "b" }) };
+  show(new FakeSource(null), craftStatus(one));
+  const becomes = (...status: SourceMessage[]) =>
+    act(() => {
+      source.tell(...status);
+      vi.advanceTimersByTime(200);
+    });
+  for (const name of ["land", "resume"]) {
+    becomes(craftStatus(one));
+    act(() => part(name)!.click());
+    const slide = part(`${name}-slider`)!;
+    await act(async () => {
+      slide.dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true }));
+      await vi.advanceTimersByTimeAsync(HOLD_MS / 2);
+    });
+    becomes(craftStatus(other));
+    await act(async () => void (await vi.advanceTimersByTimeAsync(2 * HOLD_MS)));
+    expect([part(`${name}-slider`), part(name) !== null, source.sent]).toEqual([null, true, []]);
+  }
+});
+
 it("offers to resume only when the server would accept it, and says who has control by authority", () => {
   const taken = { ...NOBODY, who: "pilot", taken_by: "mode", mode: "POSCTL" } as const;
   const flies = (authority: Authority): MissionEvent => ({ kind: "authority_changed", craft_id: CRAFT, authority, by: null });

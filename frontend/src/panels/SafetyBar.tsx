@@ -48,8 +48,10 @@ function UrgentButton({ kind }: { kind: Urgent }) {
 function Landing() {
   const target = flying.value;
   const offered = target !== null && target.phase !== "manual";
-  const disarm = () => (landingArmed.value = false);
-  useEffect(() => void (offered || disarm()), [offered]);
+  const disarm = () => {
+    landingArmed.value = false;
+  };
+  useEffect(() => disarm, [offered]);
   if (!target || !offered) return null;
   if (!landingArmed.value) {
     return (
@@ -346,6 +348,9 @@ function Countdown() {
 
 export function SafetyBar() {
   const notes = useRef<HTMLDivElement>(null);
+  const target = flying.value;
+  /** What is armed for one vehicle of one mission is not armed for another. */
+  const to = target && `${target.id} ${target.craftId}`;
   useEffect(() => {
     const measured = new ResizeObserver(([entry]) => {
       const height = Math.ceil(entry!.borderBoxSize[0]!.blockSize);
@@ -362,9 +367,9 @@ export function SafetyBar() {
           <UrgentButton kind="abort" />
           <UrgentButton kind="hold" />
           <UrgentButton kind="return" />
-          <Landing />
+          <Landing key={to} />
         </div>
-        <Resume />
+        <Resume key={to} />
         <Words />
         <Indicators />
         <ControlButton />
