@@ -159,6 +159,7 @@ export const de: Record<MessageKey, string> = {
 
   "state.none": "Keine Mission fliegt",
   "state.otherFlies": "Eine Mission fliegt",
+  "state.recording": "Aufzeichnung",
   "state.noMission": "Ein Fluggerät ist ohne Mission in der Luft",
   "state.lost": "Keine Verbindung zum Server: was Sie sehen, ist {age} alt",
   "state.draft": "Entwurf: noch nicht geprüft",

@@ -114,6 +114,7 @@ export const en = {
 
   "state.none": "No mission is flying",
   "state.otherFlies": "A mission is flying",
+  "state.recording": "Recording",
   "state.noMission": "A vehicle is in the air without a mission",
   "state.lost": "No connection to the server: what you see is {age} old",
   "state.draft": "Draft: not checked yet",

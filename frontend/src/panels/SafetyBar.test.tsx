@@ -14,6 +14,7 @@ import { live } from "../state/connection";
 import { NOBODY } from "../state/craft";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
+import { session } from "../state/session";
 import type { Authority, CraftStatus, MissionEvent, Phase } from "../wire";
 import { CRAFT, phase, record, someSpec, someStatus, someTelemetry } from "../wire/examples";
 import { SafetyBar } from "./SafetyBar";
@@ -69,7 +70,13 @@ afterEach(async () => {
   await vi.runOnlyPendingTimersAsync();
   vi.useRealTimers();
   urgent.value = {};
+  session.value = null;
 });
+
+const signIn = () => {
+  const person = { person_id: "p", name: "Ada", role: "operator" };
+  session.value = { mode: "people", person } as unknown as NonNullable<typeof session.value>;
+};
 
 const COMMANDS = [
   ["abort", "KeyA"],
@@ -253,6 +260,21 @@ it.each(["mission", "vehicle"])("asks for a slide anew once another %s is meant"
     await act(async () => void (await vi.advanceTimersByTimeAsync(2 * HOLD_MS)));
     expect([part(`${name}-slider`), part(name) !== null, source.sent]).toEqual([null, true, []]);
   }
+});
+
+it("says of a recording that it is one, and not who steered when it was made", () => {
+  class Recording extends FakeSource {
+    override readonly happensNow = false;
+    override readonly takesCommands = false;
+  }
+  signIn();
+  show(new FakeSource(), ...inPhase("hold"));
+  const words = () => part("state-words")!.lastChild!.textContent;
+  const then = words();
+  expect(part("who-steers")).not.toBeNull();
+  show(new Recording(), ...inPhase("hold"));
+  expect(words()).toBe(`${t("state.recording")}: ${then}`);
+  expect(part("who-steers")).toBeNull();
 });
 
 it("offers to resume only when the server would accept it, and says who has control by authority", () => {

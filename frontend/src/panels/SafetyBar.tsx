@@ -7,7 +7,7 @@ import { resume, sendUrgent, type Urgent, urgent } from "../commands/urgent";
 import { type MessageKey, reasonText, t } from "../i18n";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
 import { nowMs } from "../state/clock";
-import { live, serverNowMs } from "../state/connection";
+import { live, serverNowMs, source } from "../state/connection";
 import { NOBODY, pilotHas } from "../state/craft";
 import { flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
@@ -261,7 +261,8 @@ function Words() {
 
   const elsewhere = flying.value?.id === null ? "state.noMission" : flying.value ? "state.otherFlies" : "state.none";
   const doing = shown.missionId ? stateWords(shown, etaS()) : t(elsewhere);
-  const words = reviewed ? `${reviewWords(reviewed.at_utc)}: ${doing}` : doing;
+  const past = reviewed ? reviewWords(reviewed.at_utc) : source.value?.happensNow === false && t("state.recording");
+  const words = past ? `${past}: ${doing}` : doing;
   const lost = cursor.value === null && (link.state === "closed" || silence > 2 * OLD_AFTER_S) && hello !== null;
 
   const startedMs = shown.startedAt ? Date.parse(shown.startedAt) : null;

@@ -1,6 +1,6 @@
 // Who steers the search shown, as seen by whoever is signed in here. Without accounts there is nothing to say.
 import { computed } from "@preact/signals";
-import { live } from "./connection";
+import { live, source } from "./connection";
 import type { Control } from "./mission";
 import { me } from "./session";
 
@@ -19,7 +19,7 @@ export interface ControlView {
 export const controlView = computed<ControlView | null>(() => {
   const person = me.value;
   const { control, missionId, ended } = live.value.mission;
-  if (person === null || missionId === null || ended !== null) return null;
+  if (person === null || missionId === null || ended !== null || !source.value?.takesCommands) return null;
   const mine = control.holder?.person === person.person_id;
   return {
     control,
