@@ -262,6 +262,23 @@ it.each(["mission", "vehicle"])("asks for a slide anew once another %s is meant"
   }
 });
 
+it("sends whoever is signed in to the mission's own page to resume: only there its control is known", () => {
+  signIn();
+  show(new FakeSource("shown"), craftStatus({ mission_id: "m", phase: "hold" }));
+  act(() => part("resume")!.click());
+  expect([part("resume-slider"), location.hash]).toEqual([null, "#/mission/m"]);
+  show(new FakeSource(), ...inPhase("hold"), craftStatus({ mission_id: "m", phase: "hold" }));
+  act(() => part("resume")!.click());
+  expect(part("resume-slider")).not.toBeNull();
+  show(new FakeSource("shown"), craftStatus({ mission_id: "m", phase: "hold" }));
+  expect(part("resume-slider")).toBeNull();
+  act(() => {
+    session.value = null;
+  });
+  act(() => part("resume")!.click());
+  expect(part("resume-slider")).not.toBeNull();
+});
+
 it("says of a recording that it is one, and not who steered when it was made", () => {
   class Recording extends FakeSource {
     override readonly happensNow = false;

@@ -15,7 +15,8 @@ import { craftStatus, telemetry } from "../state/heard";
 import { cursor, events } from "../state/moment";
 import { toggle } from "../state/overlay";
 import { resumeRefused } from "../state/resume";
-import { missionAddress } from "../state/route";
+import { go, missionAddress } from "../state/route";
+import { me } from "../state/session";
 import { mission, shownTimeMs } from "../state/shown";
 import { toneOfPhase } from "../state/tone";
 import { vehicle } from "../state/vehicle";
@@ -80,18 +81,20 @@ function Resume() {
   const target = flying.value;
   const canResume = (target?.phase === "hold" && target.id !== null) || target?.phase === "manual";
   const refused = resumeRefused.value;
-  const offered = canResume && refused === null;
+  /** Its page, where that is not shown: who steers it is heard only there, and signed in nothing is resumed without. */
+  const there = me.value && target?.id && target.id !== source.value?.missionId && missionAddress(target.id);
+  const offered = canResume && refused === null && !there;
   useEffect(() => void (offered || setArmed(false)), [offered]);
   if (!target || !canResume) return null;
-  if (!armed || refused) {
+  if (!armed || !offered) {
     return (
       <button
         type="button"
         class="resume"
         data-testid="resume"
         disabled={refused !== null}
-        title={refused ? reasonText(refused) : t("bar.resume")}
-        onClick={() => setArmed(true)}
+        title={refused ? reasonText(refused) : t(there ? "bar.otherFlies.open" : "bar.resume")}
+        onClick={() => (there ? go(there) : setArmed(true))}
       >
         {t("bar.resume")}
       </button>
