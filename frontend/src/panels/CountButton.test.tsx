@@ -2,12 +2,14 @@
 import { render } from "preact";
 import { act } from "preact/test-utils";
 import { beforeEach, expect, it, vi } from "vitest";
-import { send } from "../commands/send";
+import { problems, report, send } from "../commands/send";
+import { localProblem } from "../sources/problem";
 import { CountButton } from "./CountButton";
 
-vi.mock("../commands/send", () => ({ send: vi.fn() }));
+vi.mock("../commands/send", async (actual) => ({ ...(await actual<typeof import("../commands/send")>()), send: vi.fn() }));
 
-const show = (leftOut: boolean) => act(() => render(<CountButton id="m" of="b" leftOut={leftOut} words="sweep.include" />, document.body));
+const show = (leftOut: boolean, of = "b") =>
+  act(() => render(<CountButton id="m" of={of} leftOut={leftOut} words="sweep.include" />, document.body));
 
 function tap(atMs: number): Promise<void> {
   const click = new MouseEvent("click", { bubbles: true });
@@ -40,6 +42,35 @@ it("sends again what was refused", async () => {
   await tap(1000);
   await tap(2000);
   expect(send).toHaveBeenCalledTimes(2);
+});
+
+const refuseOnce = () =>
+  vi.mocked(send).mockImplementationOnce(async () => {
+    report("sweep", localProblem("excluded already", ""));
+    return false;
+  });
+
+it("says no more that it was refused once the news shows what was wanted", async () => {
+  refuseOnce();
+  show(false);
+  await tap(1000);
+  expect(problems.value.sweep).toBeDefined();
+  show(true);
+  expect(problems.value.sweep).toBeUndefined();
+});
+
+it("leaves the note of another order, and of another bearing", async () => {
+  refuseOnce();
+  show(false);
+  await tap(1000);
+  const other = localProblem("the other one", "");
+  act(() => report("sweep", other));
+  show(true);
+  expect(problems.value.sweep).toBe(other);
+  refuseOnce();
+  await tap(2000);
+  show(true, "next");
+  expect(problems.value.sweep).toBeDefined();
 });
 
 it("sends again what another console undid before it was told", async () => {

@@ -113,7 +113,8 @@ function MuteButton({ id, source }: { id: string; source: BearingSource }) {
   return (
     <OrderButton
       id={id}
-      about={`${sourceKey(source)} ${muted}`}
+      about={sourceKey(source)}
+      leftOut={muted}
       order={{ ...mutable, kind: "mute_source", muted: !muted, reason: "" }}
       testId="mute-source"
       isPressed={muted}
