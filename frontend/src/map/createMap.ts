@@ -13,6 +13,8 @@ import {
 } from "maplibre-gl";
 import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
 import { t } from "../i18n";
+import { inTilePlace } from "../sources/mapsApi";
+import { tileOfHeights } from "../sources/terrainApi";
 import type { UnitSystem } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
 import { gridLines } from "./grid";
@@ -21,12 +23,15 @@ import { addWorld } from "./world";
 
 setWorkerUrl(workerUrl);
 
+addProtocol("heights", ({ url }, { signal }) => inTilePlace(async (ends) => ({ data: await tileOfHeights(url, ends.signal) }), signal));
+
 let pmtilesReady: Promise<void> | null = null;
 
 /** PMTiles is read in ranges from this server; its client is loaded when the first package is shown. */
 export function preparePmtiles(): Promise<void> {
   pmtilesReady ??= import("pmtiles").then(({ Protocol }) => {
-    addProtocol("pmtiles", new Protocol().tile);
+    const { tile } = new Protocol();
+    addProtocol("pmtiles", (asked, { signal }) => inTilePlace((ends) => tile(asked, ends), signal));
   });
   return pmtilesReady;
 }

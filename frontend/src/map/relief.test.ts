@@ -8,6 +8,7 @@ type Layer = { id: string; type: string; source: string };
 const answers = vi.hoisted(() => ({ terrains: [] as { bounds: number[] }[], asked: [] as unknown[] }));
 
 vi.mock("../sources/terrainApi", () => ({
+  HEIGHTS: "heights://",
   listTerrain: async () => ({ terrains: answers.terrains }),
   contours: async (place: unknown) => {
     answers.asked.push(place);
@@ -30,7 +31,6 @@ class FakeMap {
 const added = async (map: FakeMap) => addRelief(map as unknown as GlMap, palettes.outdoor, "belief");
 
 beforeEach(() => {
-  vi.stubGlobal("location", { origin: "http://here" });
   answers.terrains = [{ bounds: [7, 50, 8, 51] }, { bounds: [6, 49.5, 7.5, 50.5] }];
   answers.asked = [];
 });
@@ -42,7 +42,7 @@ it("lies under the belief as shading, contour lines and their heights, over all 
   expect(map.sources.get("relief")).toMatchObject({
     type: "raster-dem",
     encoding: "terrarium",
-    tiles: ["http://here/api/terrain/tiles/{z}/{x}/{y}"],
+    tiles: ["heights://{z}/{x}/{y}"],
     bounds: [6, 49.5, 8, 51],
   });
   expect(map.layers.map(({ type, source, below }) => [type, source, below])).toEqual([

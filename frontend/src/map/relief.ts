@@ -1,11 +1,10 @@
 // The ground's relief under everything else: shading and contour lines from the uploaded terrain.
 import type { Map as GlMap } from "maplibre-gl";
-import { contours, listTerrain } from "../sources/terrainApi";
+import { contours, HEIGHTS, listTerrain } from "../sources/terrainApi";
 import type { Palette } from "./palette";
 
 const LAYERS = ["relief-shade", "relief-lines", "relief-heights"] as const;
 
-const TILES = "/api/terrain/tiles/{z}/{x}/{y}";
 const [LOWEST_ZOOM, HIGHEST_ZOOM] = [8, 15];
 const SHADE = 0.5;
 
@@ -16,7 +15,7 @@ export async function addRelief(map: GlMap, colours: Palette, below: string): Pr
   const [west, south, east, north] = [0, 1, 2, 3].map((i) =>
     terrains.map(({ bounds }) => bounds[i]!).reduce((a, b) => (i < 2 ? Math.min(a, b) : Math.max(a, b))),
   ) as [number, number, number, number];
-  const tiles = [`${location.origin}${TILES}`];
+  const tiles = [`${HEIGHTS}{z}/{x}/{y}`];
   const bounds: [number, number, number, number] = [west, south, east, north];
   map.addSource("relief", {
     type: "raster-dem",

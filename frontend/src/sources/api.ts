@@ -32,6 +32,7 @@ import type {
   WhatIfRequest,
 } from "../wire";
 import { type BeliefFrame, decodeBeliefFrame } from "../wire/beliefFrame";
+import { inPlace } from "./places";
 import { localProblem, RequestFailed, unreachable } from "./problem";
 
 const TIMEOUT_MS = 20_000;
@@ -59,9 +60,14 @@ export async function problemOf(response: Response): Promise<RequestFailed> {
 async function request(path: string, init: RequestInit = {}, timeoutMs = TIMEOUT_MS): Promise<Response> {
   const timeout = AbortSignal.timeout(timeoutMs);
   const signal = init.signal ? AbortSignal.any([init.signal, timeout]) : timeout;
+  const ask = async () => {
+    const answered = await fetch(`/api${path}`, { ...init, signal });
+    await answered.clone().arrayBuffer(); // until then it keeps its connection
+    return answered;
+  };
   let response: Response;
   try {
-    response = await fetch(`/api${path}`, { ...init, signal });
+    response = await (path.endsWith("/commands") ? ask() : inPlace(ask, signal));
   } catch (error) {
     if (init.signal?.aborted) throw error;
     throw unreachable(timeout.aborted ? t("problem.timeout", { seconds: timeoutMs / 1000 }) : t("problem.connection"));

@@ -3,6 +3,7 @@
 import type { Area } from "../wire";
 import type { components } from "../wire/generated";
 import { json, requestEmpty, withBody } from "./api";
+import { inPlace, places } from "./places";
 
 type Schemas = components["schemas"];
 export type MapPackage = Schemas["MapPackage"];
@@ -27,5 +28,26 @@ export const mapLayers = (id: string, theme: "light" | "dark") => json<MapLayers
 export const deleteMap = (id: string) => requestEmpty(`/maps/${id}`, { method: "DELETE" });
 export const coverage = (area: Area) => json<Coverage>("/maps/coverage", withBody("POST", { area }));
 export const listOverlays = () => json<OverlayList>("/overlays");
-export const overlay = (id: string) => json<GeoJSON.FeatureCollection>(`/overlays/${id}`);
+
+/** Tiles and overlays come two at a time: however slow they are, there is a place for what somebody waits for. */
+const inMapPlace = places(2);
+export const overlay = (id: string) => inMapPlace(() => json<GeoJSON.FeatureCollection>(`/overlays/${id}`));
+
+const TILE_MS = 20_000;
+
+/** wanted: by the map, which no longer is when it has moved on. */
+export function inTilePlace<T>(load: (ends: AbortController) => Promise<T>, wanted: AbortSignal): Promise<T> {
+  const timed = () =>
+    new Promise<T>((resolve, reject) => {
+      const ends = new AbortController();
+      const end = AbortSignal.any([wanted, AbortSignal.timeout(TILE_MS)]);
+      end.addEventListener("abort", () => {
+        ends.abort(end.reason);
+        reject(end.reason); // an archive's first bytes are read for all of its tiles, and heed nobody's end
+      });
+      load(ends).then(resolve, reject);
+    });
+  return inMapPlace(() => inPlace(timed, wanted), wanted);
+}
+
 export const deleteOverlay = (id: string) => requestEmpty(`/overlays/${id}`, { method: "DELETE" });

@@ -1,6 +1,7 @@
 // A file as the body of a POST, with progress (fetch cannot tell it).
 import { t } from "../i18n";
 import { problemOf } from "./api";
+import { inPlace } from "./places";
 import { unreachable } from "./problem";
 
 /** The answer's JSON. */
@@ -10,24 +11,26 @@ export function upload<Answer>(
   onProgress: (share: number) => void,
   contentType = "application/octet-stream",
 ): Promise<Answer> {
-  return new Promise((resolve, reject) => {
-    const request = new XMLHttpRequest();
-    request.open("POST", `/api${path}`);
-    request.setRequestHeader("content-type", contentType);
-    request.upload.onprogress = (event) => {
-      if (event.lengthComputable) onProgress(event.loaded / event.total);
-    };
-    request.onerror = () => reject(unreachable(t("problem.upload")));
-    request.onload = () => {
-      if (request.status < 300) resolve(JSON.parse(request.responseText) as Answer);
-      else {
-        const answer = new Response(request.responseText, {
-          status: request.status,
-          headers: { "content-type": request.getResponseHeader("content-type") ?? "" },
-        });
-        void problemOf(answer).then(reject, reject);
-      }
-    };
-    request.send(file);
-  });
+  const send = () =>
+    new Promise<Answer>((resolve, reject) => {
+      const request = new XMLHttpRequest();
+      request.open("POST", `/api${path}`);
+      request.setRequestHeader("content-type", contentType);
+      request.upload.onprogress = (event) => {
+        if (event.lengthComputable) onProgress(event.loaded / event.total);
+      };
+      request.onerror = () => reject(unreachable(t("problem.upload")));
+      request.onload = () => {
+        if (request.status < 300) resolve(JSON.parse(request.responseText) as Answer);
+        else {
+          const answer = new Response(request.responseText, {
+            status: request.status,
+            headers: { "content-type": request.getResponseHeader("content-type") ?? "" },
+          });
+          void problemOf(answer).then(reject, reject);
+        }
+      };
+      request.send(file);
+    });
+  return inPlace(send);
 }
