@@ -4,7 +4,7 @@ import { newCommandId } from "../sources/api";
 import { isRefusal, RequestFailed } from "../sources/problem";
 import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } from "../sources/reportsApi";
 import { add, answered, lastOf, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
-import { keep } from "../state/kept";
+import { keep, kept } from "../state/kept";
 import { me, refreshSession, session } from "../state/session";
 import { TAP_MS } from "../state/tap";
 
@@ -15,13 +15,7 @@ const TWICE_DEG = 2;
 
 type Told = Omit<BearingReport, "bearing_id" | "taken_at_utc">;
 
-function stored(): string | null {
-  try {
-    return localStorage.getItem(KEY);
-  } catch {
-    return null;
-  }
-}
+const stored = () => kept(KEY);
 
 export const queue = signal<Queue>(read(stored()));
 /** The last attempt did not reach the server. */

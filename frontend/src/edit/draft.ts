@@ -1,6 +1,6 @@
 // What is being typed: kept in the browser until the server has taken it, so that nothing is lost.
 import { signal } from "@preact/signals";
-import { keep } from "../state/kept";
+import { drop, keep, kept } from "../state/kept";
 import type { MissionSpec } from "../wire";
 import { set } from "./path";
 
@@ -29,7 +29,7 @@ export const isUnread = ({ text }: Draft): boolean => Object.keys(text).some((pa
 
 /** null when there is none, or one of an older page. */
 export function storedDraft(key: string): Draft | null {
-  const stored = localStorage.getItem(storageKey(key));
+  const stored = kept(storageKey(key));
   if (!stored) return null;
   try {
     const parsed = JSON.parse(stored) as Draft;
@@ -48,7 +48,7 @@ export function update(next: Draft): void {
 }
 
 export function forget(key: string): void {
-  localStorage.removeItem(storageKey(key));
+  drop(storageKey(key));
 }
 
 /** Once the server has it; what was begun meanwhile in its place stays. */

@@ -1,7 +1,7 @@
 // Vehicles and sensors one flies again and again: the values that belong to the equipment, kept under a name.
 import { signal } from "@preact/signals";
 import type { Suggested } from "../sources/libraryApi";
-import { keep } from "../state/kept";
+import { keep, kept } from "../state/kept";
 import type { MissionSpec } from "../wire";
 import { get } from "./path";
 
@@ -60,10 +60,9 @@ const unstored = new Map<string, Profile | null>();
 
 /** Another tab may have saved one meanwhile. */
 const stored = (): Profile[] =>
-  [
-    ...readProfiles(localStorage.getItem(KEY)).filter((p) => !unstored.has(p.name)),
-    ...[...unstored.values()].filter((p) => p !== null),
-  ].sort((a, b) => a.name.localeCompare(b.name));
+  [...readProfiles(kept(KEY)).filter((p) => !unstored.has(p.name)), ...[...unstored.values()].filter((p) => p !== null)].sort((a, b) =>
+    a.name.localeCompare(b.name),
+  );
 
 export function readAgain(): void {
   profiles.value = stored();

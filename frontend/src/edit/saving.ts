@@ -1,6 +1,7 @@
 // A draft on its way to the server: saved once however often its answer is lost, and never over another's unseen.
 import * as api from "../sources/api";
 import { isRefusal, type RequestFailed } from "../sources/problem";
+import { drop, kept } from "../state/kept";
 import type { Mission, MissionSpec } from "../wire";
 
 const DRAFTED_SEQ = 1;
@@ -9,19 +10,19 @@ const storageKey = (key: string) => `crossfix.saving.${key}`;
 
 /** Of this tab, over a reload too. Two tabs draft two missions. */
 function missionIdFor(key: string): string {
-  const known = sessionStorage.getItem(storageKey(key));
+  const known = kept(storageKey(key), "sessionStorage");
   if (known) return known;
   const id = api.newCommandId();
   try {
     sessionStorage.setItem(storageKey(key), id);
   } catch {
-    // full: pressed again, it drafts another
+    // full, or kept from it: pressed again, it drafts another
   }
   return id;
 }
 
 /** The next save drafts another mission. */
-export const forgetSaving = (key: string): void => sessionStorage.removeItem(storageKey(key));
+export const forgetSaving = (key: string): void => drop(storageKey(key), "sessionStorage");
 
 const hasCode = (error: unknown, code: string): error is RequestFailed => isRefusal(error) && error.problem.reason?.code === code;
 

@@ -2,19 +2,23 @@
 import { signal } from "@preact/signals";
 import type { Map as GlMap, LayerSpecification, SourceSpecification } from "maplibre-gl";
 import { mapLayers } from "../sources/mapsApi";
+import { drop, kept } from "../state/kept";
 import type { Reason } from "../wire";
 import { preparePmtiles } from "./createMap";
 
 const KEY = "crossfix.basemap";
 
 /** Id of the package shown; null: the plain grid. */
-export const basemap = signal<string | null>(localStorage.getItem(KEY));
+export const basemap = signal<string | null>(kept(KEY));
 
 export function chooseBasemap(id: string | null): void {
   basemap.value = id;
+  if (id === null) {
+    drop(KEY);
+    return;
+  }
   try {
-    if (id === null) localStorage.removeItem(KEY);
-    else localStorage.setItem(KEY, id);
+    localStorage.setItem(KEY, id);
   } catch {
     // a full storage: it is shown as long as the page
   }

@@ -1,13 +1,13 @@
 // Overlays chosen on the maps page: points, lines and areas from GeoJSON or KML files.
 import { effect, signal } from "@preact/signals";
 import { overlay } from "../sources/mapsApi";
-import { keep } from "../state/kept";
+import { keep, kept } from "../state/kept";
 
 const KEY = "crossfix.overlays";
 
 function stored(): string[] {
   try {
-    const parsed: unknown = JSON.parse(localStorage.getItem(KEY) ?? "[]");
+    const parsed: unknown = JSON.parse(kept(KEY) ?? "[]");
     return Array.isArray(parsed) ? parsed.filter((id): id is string => typeof id === "string") : [];
   } catch {
     return [];

@@ -13,7 +13,7 @@ import { advised, advisedWay } from "../state/advice";
 import { isOwn, lastOf, pending, type Stage } from "../state/bearingQueue";
 import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
-import { keep } from "../state/kept";
+import { keep, kept } from "../state/kept";
 import { emittersThen, look } from "../state/moment";
 import { compassState, magneticDeg, startCompass, stopCompass } from "../state/phoneCompass";
 import { missionAddress } from "../state/route";
@@ -44,7 +44,7 @@ interface Reporter {
 
 function readReporter(): Reporter {
   try {
-    const { name = "", declination = 0 } = JSON.parse(localStorage.getItem(KEPT) ?? "{}") as Partial<Reporter>;
+    const { name = "", declination = 0 } = JSON.parse(kept(KEPT) ?? "{}") as Partial<Reporter>;
     return { name: String(name), declination: Number(declination) || 0 };
   } catch {
     return { name: "", declination: 0 };

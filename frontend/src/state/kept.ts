@@ -9,3 +9,22 @@ export function keep(key: string, value: unknown): boolean {
     return false;
   }
 }
+
+type Where = "localStorage" | "sessionStorage";
+
+/** null: nothing, or a browser that keeps nothing at all. */
+export function kept(key: string, where: Where = "localStorage"): string | null {
+  try {
+    return globalThis[where].getItem(key);
+  } catch {
+    return null;
+  }
+}
+
+export function drop(key: string, where: Where = "localStorage"): void {
+  try {
+    globalThis[where].removeItem(key);
+  } catch {
+    // it keeps nothing
+  }
+}

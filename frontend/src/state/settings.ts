@@ -4,7 +4,7 @@ import { type Language, setLanguage } from "../i18n";
 import type { CoordinateFormat } from "../units/coordinates";
 import type { UnitSystem } from "../units/quantities";
 import { coordinateFormat, unitSystem } from "../units/shown";
-import { keep } from "./kept";
+import { keep, kept } from "./kept";
 
 export interface Settings {
   theme: "outdoor" | "indoor";
@@ -48,7 +48,7 @@ export function readSettings(stored: string | null): Settings {
   return { ...read, theme: read.theme === "indoor" ? "indoor" : "outdoor" };
 }
 
-export const settings = signal<Settings>(readSettings(localStorage.getItem(KEY)));
+export const settings = signal<Settings>(readSettings(kept(KEY)));
 
 export function change<K extends keyof Settings>(key: K, value: Settings[K]): void {
   settings.value = { ...settings.value, [key]: value };
