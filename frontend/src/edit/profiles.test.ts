@@ -72,6 +72,38 @@ it("what could not be stored joins what other tabs stored, and is stored with it
   for (const name of inStorage()) removeProfile(name);
 });
 
+it("what could not be stored gives way to what another tab saved or removed later", () => {
+  const key = "crossfix.profiles";
+  const one = (sigma: number) => profileOf(set(someSpec(), "sensor.sigma_deg", sigma), "one");
+  const unstored = (sigma: number) => {
+    const kept = localStorage.getItem(key);
+    const setItem = () => {
+      throw new DOMException("full");
+    };
+    vi.stubGlobal("localStorage", { getItem: () => kept, setItem });
+    saveProfile(one(sigma));
+    vi.unstubAllGlobals();
+  };
+  const elsewhere = (next: object[]) => {
+    const oldValue = localStorage.getItem(key);
+    localStorage.setItem(key, JSON.stringify(next));
+    dispatchEvent(new StorageEvent("storage", { key, oldValue, newValue: localStorage.getItem(key) }));
+  };
+  saveProfile(one(1));
+  unstored(5);
+  elsewhere([one(1), profileOf(someSpec(), "two")]);
+  expect(profiles.value.map((p) => [p.name, p.sensor.sigma_deg])[0]).toEqual(["one", 5]);
+  expect(areStored.value).toBe(false);
+  elsewhere([one(7)]);
+  expect(profiles.value.map((p) => [p.name, p.sensor.sigma_deg])).toEqual([["one", 7]]);
+  expect(areStored.value).toBe(true);
+  unstored(5);
+  elsewhere([]);
+  saveProfile(profileOf(someSpec(), "three"));
+  expect(readProfiles(localStorage.getItem(key)).map((p) => p.name)).toEqual(["three"]);
+  removeProfile("three");
+});
+
 it("takes the place of what was typed in its own fields only", () => {
   const left = { emitters: "15o.3 typo", "flight.fence_margin_m": "wide" };
   const set = { "flight.speed_m_s": "fast", "sensor.sigma_deg": "x", "planner.motion.turn_rate_deg_s": "?" };

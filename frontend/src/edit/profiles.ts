@@ -68,8 +68,16 @@ export function readAgain(): void {
   profiles.value = stored();
 }
 
+/** What another tab saved or removed after it holds. */
+function forgetOvertaken(before: string | null, now: string | null): void {
+  const [was, is] = [before, now].map((text) => new Map(readProfiles(text).map((p) => [p.name, JSON.stringify(p)])));
+  for (const name of unstored.keys()) if (was!.get(name) !== is!.get(name)) unstored.delete(name);
+  if (unstored.size === 0) areStored.value = true;
+}
+
 readAgain();
-addEventListener("storage", ({ key }) => {
+addEventListener("storage", ({ key, oldValue, newValue }) => {
+  if (key === KEY) forgetOvertaken(oldValue, newValue);
   if (key === KEY || key === null) readAgain(); // null: all was cleared
 });
 

@@ -40,3 +40,22 @@ it("keeps what another tab chose meanwhile, and shows it", () => {
   change("units", "imperial");
   expect(readSettings(localStorage.getItem("crossfix.settings"))).toMatchObject({ theme: "indoor", units: "imperial" });
 });
+
+it("keeps what could not be stored here when another tab chooses something else", () => {
+  const key = "crossfix.settings";
+  const oldValue = JSON.stringify({ ...settings.value, theme: "outdoor", tones: true });
+  localStorage.setItem(key, oldValue);
+  vi.stubGlobal("localStorage", {
+    setItem: () => {
+      throw new DOMException("full");
+    },
+  });
+  change("tones", false);
+  vi.unstubAllGlobals();
+  const newValue = JSON.stringify({ ...JSON.parse(oldValue), theme: "indoor" });
+  dispatchEvent(new StorageEvent("storage", { key, oldValue, newValue }));
+  expect(settings.value).toMatchObject({ theme: "indoor", tones: false });
+  const back = JSON.stringify({ ...JSON.parse(newValue), theme: "outdoor" });
+  dispatchEvent(new StorageEvent("storage", { key, oldValue: newValue, newValue: back }));
+  expect(settings.value.theme).toBe("outdoor");
+});

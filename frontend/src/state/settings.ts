@@ -55,9 +55,12 @@ export function change<K extends keyof Settings>(key: K, value: Settings[K]): vo
   keep(KEY, settings.value);
 }
 
-// chosen in another tab
-addEventListener("storage", ({ key, newValue }) => {
-  if (key === KEY) settings.value = readSettings(newValue);
+// chosen in another tab; what was chosen here may not have been stored
+addEventListener("storage", ({ key, oldValue, newValue }) => {
+  if (key !== KEY) return;
+  const [was, is] = [readSettings(oldValue), readSettings(newValue)];
+  const chosen = Object.entries(is).filter(([name, value]) => value !== was[name as keyof Settings]);
+  settings.value = { ...settings.peek(), ...Object.fromEntries(chosen) };
 });
 
 /** onLanguageLost: its words could not be loaded; a language chosen before stays chosen. */
