@@ -90,6 +90,9 @@ it("gives the map the keys while something is being drawn, unless one has gone e
   input!.focus();
   await vi.advanceTimersByTimeAsync(1000);
   expect(document.activeElement).toBe(input);
+  await expect(settledDraft()).rejects.toThrow();
+  await vi.advanceTimersByTimeAsync(1000);
+  expect(document.activeElement, "somebody types").toBe(input);
   document.body.innerHTML = "";
   vi.useRealTimers();
 });

@@ -72,9 +72,11 @@ function endMoving(): void {
   if (tool.peek() === "corners") tool.value = "none";
 }
 
-/** The Enter that finishes a drawing is the map's; not the one that is still pressed, nor of somebody who went elsewhere. */
+/** The Enter that finishes a drawing is the map's; not the one that is still pressed, nor of somebody who types or has gone
+ * elsewhere. */
 function focusMap(): void {
   const before = document.activeElement;
+  if (before?.matches("input, textarea, select")) return;
   setTimeout(() => {
     if (document.activeElement === before) document.querySelector<HTMLElement>(".map-area canvas")?.focus();
   }, TAP_MS);

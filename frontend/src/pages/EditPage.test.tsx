@@ -3,6 +3,7 @@ import { render } from "preact";
 import { act } from "preact/test-utils";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { draft } from "../edit/draft";
+import { tool } from "../edit/drawing";
 import * as api from "../sources/api";
 import type { MissionSpec } from "../wire";
 import { someSpec } from "../wire/examples";
@@ -50,4 +51,17 @@ it("does not take the late answer of a mission that was left for its own", async
   await first("Meadow");
   expect(draft.value?.key).toBe("second");
   expect(shownName()).toBe("Mill");
+});
+
+it("gives the keys back to the field whose Enter asked to save what cannot be saved yet", async () => {
+  await edited("first")("Meadow");
+  const name = document.querySelector<HTMLInputElement>("[data-testid=field-name]")!;
+  tool.value = "polygon";
+  name.focus();
+  await act(async () => {
+    name.form!.requestSubmit();
+    await new Promise((resolve) => setTimeout(resolve));
+  });
+  expect(document.querySelector("[data-testid=edit-problem]")?.textContent).toContain("press Enter to finish");
+  expect(document.activeElement).toBe(name);
 });

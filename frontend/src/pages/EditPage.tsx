@@ -196,6 +196,7 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
   const [restored, setRestored] = useState(false);
   const isLeft = useRef(false);
 
+  const typedIn = useRef<HTMLElement | null>(null);
   useEffect(() => {
     clearPreview();
     const kept = storedDraft(key);
@@ -221,7 +222,9 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
   }, []);
 
   const save = async (over?: number) => {
-    (document.activeElement as HTMLElement | null)?.blur(); // what is typed there is taken, or marked
+    const focused = document.activeElement as HTMLElement | null;
+    typedIn.current = focused?.matches("input, textarea, select") ? focused : null;
+    focused?.blur(); // what is typed there is taken, or marked
     setFailed(null);
     setSaving(true);
     try {
@@ -245,6 +248,9 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
   const theirs = failed && savedMeanwhile(failed);
   useEffect(openMarked, [failed, !now]);
   return (
+  useEffect(() => {
+    if (!saving && document.activeElement === document.body) typedIn.current?.focus({ preventScroll: true }); // what is said is in sight
+  }, [saving]);
     <div class="edit" data-testid="edit-page" inert={saving}>
       <EditMapArea onTold={setTold} />
       <form
