@@ -52,7 +52,10 @@ it("takes no further words while it saves, and again when that failed", async ()
   vi.mocked(label).mockRejectedValue(new Error("no network"));
   act(() => part("label-save").click());
   expect(part("label-form").inert).toBe(true);
+  const save = part<HTMLButtonElement>("label-save");
+  expect([save.textContent, save.disabled]).toEqual(["Saving …", true]);
   await vi.waitFor(() => expect(part("label-form").inert).toBe(false));
+  expect([save.textContent, save.disabled]).toEqual(["Save", false]);
   expect(notes().value).toBe("fed at dusk");
   expect(done).not.toHaveBeenCalled();
 });

@@ -14,7 +14,7 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
   const { mission_id: id, deleted_at_utc: deleted } = mission;
   const [typed, setTyped] = useState(unsaved.get(id) ?? {});
   const [problem, setProblem] = useState<Problem | null>(null);
-  const [sending, setSending] = useState(false);
+  const [sending, setSending] = useState<MessageKey | null>(null);
   const { name, tags, notes } = { name: mission.name, tags: mission.tags.join(", "), notes: mission.notes, ...typed };
   const type = (changes: Partial<typeof typed>) => {
     const next = { ...typed, ...changes };
@@ -23,7 +23,7 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
   };
   const form = useRef<HTMLFormElement>(null);
   const after = (what: MessageKey, done: Promise<unknown>) => {
-    setSending(true); // what is typed meanwhile would not be sent
+    setSending(what); // what is typed meanwhile would not be sent
     done.then(
       () => {
         if (unsaved.get(id) === typed) unsaved.delete(id);
@@ -33,7 +33,7 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
         const failed = asProblem(error);
         if (!form.current) report("bar", localProblem(`${t(what)}: ${name}`, problemWords(failed)));
         setProblem(failed);
-        setSending(false);
+        setSending(null);
       },
     );
   };
@@ -51,7 +51,7 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
       class="label-form"
       data-testid="label-form"
       ref={form}
-      inert={sending}
+      inert={sending !== null}
       onSubmit={(e) => {
         e.preventDefault();
         after("missions.save", label(id, labels()));
@@ -73,6 +73,8 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
       <div class="row-actions">
         <button
           type="button"
+          class={deleted ? "" : "remove"}
+          disabled={sending !== null}
           data-testid={deleted ? "restore-mission" : "delete-mission"}
           onClick={() => after(ending, deleted ? restore(id) : remove(id))}
         >
@@ -81,6 +83,7 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
         <button
           type="button"
           data-testid="label-discard"
+          disabled={sending !== null}
           onClick={() => {
             unsaved.delete(id);
             onDone();
@@ -88,8 +91,8 @@ export function LabelForm({ mission, onDone }: { mission: MissionSummary; onDone
         >
           {t("slide.cancel")}
         </button>
-        <button type="submit" class="primary" data-testid="label-save" disabled={name.trim() === ""}>
-          {t("missions.save")}
+        <button type="submit" class="primary" data-testid="label-save" disabled={sending !== null || name.trim() === ""}>
+          {t(sending === "missions.save" ? "edit.saving" : "missions.save")}
         </button>
       </div>
       {!deleted && <p class="muted">{t("missions.deleteHint")}</p>}
