@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Route, expect
+from playwright.sync_api import Locator, Route, expect
 from screen import OpenScreen, Screen
 from served import Server
 
@@ -157,6 +157,37 @@ def test_a_new_area_in_flight_is_not_asked_of_while_it_is_being_drawn(server: Se
     expect(screen.page.locator("canvas:focus")).to_be_visible()
     screen.page.keyboard.press("Enter")
     expect(screen.part("draw-polygon")).to_have_attribute("aria-pressed", "false")
+
+
+def top(part: Locator) -> float:
+    box = part.bounding_box()
+    assert box is not None
+    return box["y"]
+
+
+def bottom(part: Locator) -> float:
+    box = part.bounding_box()
+    assert box is not None
+    return box["y"] + box["height"]
+
+
+def test_on_a_phone_an_answer_leaves_room_for_the_tools(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, f"#/mission/{server.draft()}/area", viewport={"width": 360, "height": 740})
+    margin = screen.part("field-flight-fence_margin_m")
+    expect(margin).to_be_visible()
+    screen.evaluate("() => { Storage.prototype.setItem = () => { throw new DOMException('full') } }")
+    margin.fill("61")
+    margin.blur()
+    screen.part("outlook-ask").click()
+    said, buttons = screen.part("outlook"), screen.page.locator(".edit-foot")
+    expect(said).to_contain_text("is not flying")
+    assert bottom(said) <= top(buttons) + 1, "what is said comes into sight"
+    head = screen.page.locator(".edit-head")
+    head.scroll_into_view_if_needed()
+    assert top(buttons) - top(head) > 200
+    assert bottom(screen.part("draw-polygon")) <= top(buttons)
+    screen.part("draw-corners").click()
+    expect(screen.part("draw-corners")).to_have_attribute("aria-pressed", "true")
 
 
 def test_a_file_being_read_for_another_mission_does_not_keep_this_one_from_being_saved(

@@ -42,6 +42,12 @@ export function storedDraft(key: string): Draft | null {
 /** False: the draft as it is now lives as long as the page, and an older one may be stored. */
 export const isStored = signal(true);
 
+/** Kept from the first change on. */
+export function begin(fresh: Draft): void {
+  draft.value = fresh;
+  isStored.value = true;
+}
+
 export function update(next: Draft): void {
   draft.value = next;
   isStored.value = keep(storageKey(next.key), next);

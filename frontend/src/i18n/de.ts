@@ -561,6 +561,7 @@ export const de: Record<MessageKey, string> = {
   "area.what":
     "Die Mission hält solange. Peilungen zählen weiter; was Sie zeichnen, kommt zum Gebiet dazu. Vor dem Schieben ändert sich nichts.",
   "area.notHeld": "Das Gebiet ändert sich nur, während die Mission hält: zuerst Halten drücken.",
+  "area.notStarted": "Die Mission hat nicht begonnen: ihr Gebiet ändert man mit dem übrigen Entwurf.",
   "area.over": "Die Mission ist vorbei: ihr Gebiet ändert sich nicht mehr.",
   "area.outlook": "Was dort zu erwarten ist",
   "area.ask": "Was hieße das?",
@@ -687,7 +688,7 @@ export const de: Record<MessageKey, string> = {
   "edit.saveOver": "Meine Fassung darüber speichern",
   "edit.takeTheirs": "Meine verwerfen, andere ändern",
   "edit.invalid": "Bitte berichtigen, was unten markiert ist.",
-  "edit.notStored": "Der Speicher dieses Browsers ist voll: Was hier steht, geht beim Verlassen der Seite verloren.",
+  "edit.notStored": "Der Speicher dieses Browsers ist voll oder gesperrt: Was hier steht, geht beim Verlassen der Seite verloren.",
   "edit.section.name": "Was gesucht wird",
   "edit.section.area": "Wo er sein kann",
   "edit.section.flight": "Wie geflogen wird",

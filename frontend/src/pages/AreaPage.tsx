@@ -1,14 +1,15 @@
 // The search area of a mission in flight: drawn again while it holds, judged by the planner, changed by a slide.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
-import { draft, isStored, isUnread, storedDraft, update } from "../edit/draft";
+import { begin, draft, isStored, isUnread, storedDraft, update } from "../edit/draft";
 import { discard, replaces, settledDraft, tool } from "../edit/drawing";
 import { NotStored } from "../edit/NotStored";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
+import { Told } from "../edit/Told";
 import { t } from "../i18n";
 import { ProblemBox, ProblemNote } from "../panels/ProblemNote";
 import * as api from "../sources/api";
@@ -26,21 +27,27 @@ function Changed({ id }: { id: string }) {
   const [problem, setProblem] = useState<Problem | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
 
+  const isLeft = useRef(false);
+
+  const read = () => {
+    setProblem(null);
+    api.mission(id).then(
+      ({ spec }) => {
+        if (!isLeft.current) begin({ key, spec: spec as MissionSpec, hasArea: true, suggested: false, text: {} });
+      },
+      // nothing has been typed that the remedy could say is not lost
+      (error: unknown) => setProblem({ ...asProblem(error), remedy: "" }),
+    );
+  };
+
   useEffect(() => {
-    let isLeft = false;
     replaces.value = false;
     draft.value = null;
     const kept = storedDraft(key);
     if (kept) update(kept);
-    else
-      api.mission(id).then(
-        ({ spec }) => {
-          if (!isLeft) draft.value = { key, spec: spec as MissionSpec, hasArea: true, suggested: false, text: {} };
-        },
-        (error: unknown) => setProblem(asProblem(error)),
-      );
+    else read();
     const leave = () => {
-      isLeft = true;
+      isLeft.current = true;
       tool.value = "none"; // corners that were moved are kept
       draft.value = null;
     };
@@ -66,7 +73,9 @@ function Changed({ id }: { id: string }) {
   const isAsking = judged !== null && !judged.found && !judged.problem;
   const isHere = draft.value?.key === key;
   const isReadable = draft.value?.hasArea && !isUnread(draft.value);
-  const held = mission.value.phase === "hold" && mission.value.ended === null;
+  const { phase, ended } = mission.value;
+  const held = phase === "hold" && ended === null;
+  const isDraft = phase === "draft" || phase === "ready";
   return (
     <div class="edit" data-testid="area-page">
       <EditMapArea onTold={setTold} />
@@ -75,19 +84,29 @@ function Changed({ id }: { id: string }) {
           <h1>{t("area.change")}</h1>
         </div>
         <div class="edit-scroll">
-          <p class="panel">{t("area.what")}</p>
-          {isHere && <AreaSection failed={judged?.failed ?? null} told={told} onTold={setTold} />}
+          {isHere && (
+            <>
+              {!ended && (
+                <p class="panel" data-testid="area-what">
+                  {t(isDraft ? "area.notStarted" : "area.what")}
+                </p>
+              )}
+              <AreaSection failed={judged?.failed ?? null} told={told} onTold={setTold} />
+            </>
+          )}
         </div>
-        <div class="panel edit-foot">
+        <Told news={problem ?? judged}>
           {isHere && !isStored.value && <NotStored />}
           {problem && <ProblemBox problem={problem} testId="area-problem" />}
           {judged && <OutlookCard judged={judged} />}
-          {!held && (
+          {isHere && !isDraft && !held && (
             <p role="status" data-testid="area-not-held">
-              <strong>{t(mission.value.ended === null ? "area.notHeld" : "area.over")}</strong>
+              <strong>{t(ended ? "area.over" : "area.notHeld")}</strong>
             </p>
           )}
           <ProblemNote desk="area" />
+        </Told>
+        <div class="panel edit-foot">
           {judged?.found?.allowed && held ? (
             <SlideToConfirm
               label={t("area.slide")}
@@ -101,7 +120,12 @@ function Changed({ id }: { id: string }) {
               <button type="button" data-testid="area-cancel" onClick={leave}>
                 {t("area.keep")}
               </button>
-              {!judged?.found && (
+              {problem && !isHere && (
+                <button type="button" class="primary" data-testid="area-again" onClick={read}>
+                  {t("app.reload")}
+                </button>
+              )}
+              {isHere && !judged?.found && (
                 <button type="button" class="primary" data-testid="outlook-ask" disabled={isAsking || !isReadable} onClick={ask}>
                   {t(isAsking ? "area.asking" : "area.ask")}
                 </button>

@@ -5,7 +5,7 @@ import { suggestedSpec } from "../commands/suggested";
 import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
-import { change, type Draft, draft, forgetSent, isStored, isUnread, storedDraft, textBeside, update } from "../edit/draft";
+import { begin, change, type Draft, draft, forgetSent, isStored, isUnread, storedDraft, textBeside, update } from "../edit/draft";
 import { discard, settledDraft, tool } from "../edit/drawing";
 import { EmitterListField } from "../edit/EmitterListField";
 import { EMITTER, firstEmitter } from "../edit/emitter";
@@ -21,6 +21,7 @@ import { clearPreview, forgetPreviewOfOthers } from "../edit/preview";
 import { ReceiverBandField } from "../edit/ReceiverBandField";
 import { RhythmFields } from "../edit/RhythmFields";
 import { draftOnce, forgetSaving, savedMeanwhile } from "../edit/saving";
+import { Told } from "../edit/Told";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
@@ -195,8 +196,8 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
   const [saving, setSaving] = useState(false);
   const [restored, setRestored] = useState(false);
   const isLeft = useRef(false);
-
   const typedIn = useRef<HTMLElement | null>(null);
+
   useEffect(() => {
     clearPreview();
     const kept = storedDraft(key);
@@ -206,7 +207,7 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
       draft.value = null; // what is typed until it has come would be lost
       specFor(route).then(
         (begun) => {
-          if (!isLeft.current) draft.value = { key, ...begun, hasArea: true, text: {} }; // kept from the first change on
+          if (!isLeft.current) begin({ key, ...begun, hasArea: true, text: {} });
         },
         (error: unknown) => setFailed(asFailure(error)),
       );
@@ -247,10 +248,10 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
   const now = draft.value?.key === key ? draft.value : null;
   const theirs = failed && savedMeanwhile(failed);
   useEffect(openMarked, [failed, !now]);
-  return (
   useEffect(() => {
     if (!saving && document.activeElement === document.body) typedIn.current?.focus({ preventScroll: true }); // what is said is in sight
   }, [saving]);
+  return (
     <div class="edit" data-testid="edit-page" inert={saving}>
       <EditMapArea onTold={setTold} />
       <form
@@ -282,9 +283,11 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
             </>
           )}
         </div>
-        <div class="panel edit-foot">
+        <Told news={failed}>
           {now && !isStored.value && <NotStored />}
           {failed && <ProblemBox problem={failed.problem} testId="edit-problem" />}
+        </Told>
+        <div class="panel edit-foot">
           {theirs !== null && (
             <div class="start-row">
               <button type="button" data-testid="save-over" onClick={() => save(theirs)}>
