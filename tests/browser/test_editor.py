@@ -130,14 +130,14 @@ def test_what_cannot_be_read_in_a_field_that_is_gone_is_asked_for_no_more(server
 
 def test_a_mission_saved_late_does_not_lead_away_from_the_next(server: Server, editor: Screen) -> None:
     held: list[Route] = []
-    editor.page.route("**/api/missions", lambda route: held.append(route))
+    editor.page.route("**/api/missions?mission_id=*", lambda route: held.append(route))
     editor.part("field-name").fill("First")
-    with editor.page.expect_request("**/api/missions"):
+    with editor.page.expect_request("**/api/missions?mission_id=*"):
         editor.part("save").click()
     editor.go("#/maps")
     editor.go("#/new")
     editor.part("field-name").fill("Second")
-    with editor.page.expect_response("**/api/missions"):
+    with editor.page.expect_response("**/api/missions?mission_id=*"):
         held[0].continue_()
     assert "First" in [mission["name"] for mission in server.get("/api/missions")["missions"]]
     editor.page.reload()
