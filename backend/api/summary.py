@@ -95,7 +95,7 @@ def _found(emitter: EmitterState) -> EmitterFound:
     return EmitterFound(
         emitter_id=emitter.emitter_id,
         bearings=len(emitter.bearings),
-        estimate=None if belief is None else belief.estimate,
+        estimate=None if belief is None else belief.measured_estimate,
         localized=belief is not None and belief.localized,
         not_yet=[NoBearingYet()] if belief is None and not emitter.bearings else list(emitter.not_yet),
     )

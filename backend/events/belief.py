@@ -70,3 +70,8 @@ class BeliefUpdated(Fact):
     sources: list[SourceErrorsFact] = Field(default_factory=list[SourceErrorsFact])
     digest: str
     legs: list[LegSaid] = Field(default_factory=list[LegSaid])
+
+    @property
+    def measured_estimate(self) -> EstimateFact | None:
+        """None also without a bearing that counts: the middle of the area is no finding."""
+        return self.estimate if self.bearings > 0 else None

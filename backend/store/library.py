@@ -65,9 +65,11 @@ def advance(entry: LibraryEntry, event: Event, at_us: int) -> LibraryEntry:
         case BearingMeasured(place=place):
             before = entry.sketch.get("places", [])
             return _drawn(entry, places=[*before, _point(place)]) if len(before) < MOST_PLACES else entry
-        case BeliefUpdated(emitter_id=emitter_id, estimate=estimate) if estimate is not None:
-            known = entry.sketch.get("found", {})
-            return _drawn(entry, found={**known, emitter_id: _point(Place(lat=estimate.lat, lon=estimate.lon))})
+        case BeliefUpdated(emitter_id=emitter_id, measured_estimate=estimate):
+            found = {name: at for name, at in entry.sketch.get("found", {}).items() if name != emitter_id}
+            if estimate is not None:
+                found[emitter_id] = _point(Place(lat=estimate.lat, lon=estimate.lon))
+            return _drawn(entry, found=found)
         case TruthNoted(emitter_id=emitter_id, place=place):
             truth = {**entry.sketch.get("truth", {}), emitter_id: None if place is None else _point(place)}
             return replace(_drawn(entry, truth=truth), truths=len(truth))

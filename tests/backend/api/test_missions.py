@@ -6,9 +6,10 @@ import asyncio
 from uuid import uuid4
 
 import pytest
-from facts import bearing
+from facts import bearing, belief
 
-from backend.events import CommandRefused
+from backend.events import CommandRefused, EstimateFact
+from backend.spec import Polygon
 from backend.wire.problem import Problem
 
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
@@ -193,6 +194,23 @@ async def test_a_mission_says_what_is_known_of_each_emitter(client):
     assert [reason["code"] for e in mission["found"] for reason in e["not_yet"]] == ["no_bearing_yet"] * 2
     twice = await client.post("/api/missions", json=spec(emitters=[tag, tag]))
     is_problem(twice, 422)
+
+
+@pytest.mark.parametrize("nothing", [{"bearings": 0}, {"estimate": None}], ids=["taken back", "inconsistent"])
+async def test_what_nobody_measured_is_neither_an_estimate_nor_found(client, services, nothing):
+    """After a start and an abort at once, and once all bearings are taken back, only the area is believed in."""
+    mission_id = (await draft(client))["mission_id"]
+    place = EstimateFact(
+        lat=50.601, lon=7.202, expected_rmse_m=9.0, c95=Polygon.model_validate(AREA), c95_area_m2=6e2,
+        major_axis_m=8.0, minor_axis_m=6.0, major_axis_deg=0.0,
+    )  # fmt: skip
+    sure = belief(2).model_copy(update={"estimate": place})
+    unsure = sure.model_copy(update=nothing)
+    for fact, names in ((unsure, []), (sure, ["emitter-1"]), (unsure, [])):
+        await services.journal.append(mission_id, [fact])
+        mission = (await client.get(f"/api/missions/{mission_id}")).json()
+        assert [one["emitter_id"] for one in mission["found"] if one["estimate"] is not None] == names
+        assert list(mission["sketch"]["found"]) == names
 
 
 async def test_bearings_of_which_no_belief_can_be_made_are_not_said_to_be_none(client, services):
