@@ -14,18 +14,15 @@ from datetime import UTC, datetime, timedelta
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-import pymap3d.vincenty
-
 from backend.events import BearingMeasured, BeliefUpdated, EstimateFact, Recorded
 from backend.search.emitter import EmitterState
-from backend.search.state import SearchState, evolve
-from backend.spec import EmitterSpec
+from backend.spec import MissionSpec
 from backend.wire.export import Tracks
+from backend.wire.export_facts import altitude_amsl_m, folded, mission_name, ray_lengths_m, xml_words
 
 SIGMAS_95 = 2.4477
 UNKNOWN = "9999999.0"
 STALE = timedelta(days=1)
-RAY_M = 500.0
 
 
 def cot_package(recorded: Sequence[Recorded], tracks: Tracks) -> bytes:
@@ -35,7 +32,7 @@ def cot_package(recorded: Sequence[Recorded], tracks: Tracks) -> bytes:
     package = Element("MissionPackageManifest", version="2")
     configuration = SubElement(package, "Configuration")
     SubElement(configuration, "Parameter", name="uid", value=_uid(mission, "package"))
-    SubElement(configuration, "Parameter", name="name", value=_state(recorded).mission.name if recorded else "empty")
+    SubElement(configuration, "Parameter", name="name", value=xml_words(mission_name(recorded)) or "empty")
     contents = SubElement(package, "Contents")
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -53,39 +50,45 @@ def cot_events(recorded: Sequence[Recorded]) -> list[Element]:
     """Each emitter with its ellipse when there is an estimate, and a line for each bearing that counts."""
     if not recorded:
         return []
-    state, mission_id = _state(recorded), recorded[0].mission_id
+    state, mission_id = folded(recorded), recorded[0].mission_id
     times = {r.event.bearing_id: r.at_utc for r in recorded if isinstance(r.event, BearingMeasured)}
     beliefs = {r.event.emitter_id: r.at_utc for r in recorded if isinstance(r.event, BeliefUpdated)}
     events: list[Element] = []
     for emitter in state.emitters.values():
-        sought = state.mission.emitter(emitter.emitter_id)
-        events += _events_of(f"{mission_id}/{emitter.emitter_id}", emitter, sought, beliefs, times)
+        events += _events_of(f"{mission_id}/{emitter.emitter_id}", emitter, state.mission, beliefs, times)
     return events
 
 
 def _events_of(
-    key: str, emitter: EmitterState, sought: EmitterSpec, beliefs: Mapping[str, datetime], times: Mapping[str, datetime]
+    key: str,
+    emitter: EmitterState,
+    mission: MissionSpec,
+    beliefs: Mapping[str, datetime],
+    times: Mapping[str, datetime],
 ) -> list[Element]:
     """key: what the events' ids are made from."""
-    belief, label = emitter.belief, sought.label
+    belief, label = emitter.belief, xml_words(mission.name_of(emitter.emitter_id))
     events: list[Element] = []
-    estimate = None if belief is None else belief.estimate
+    estimate = None if belief is None else belief.measured_estimate
     if belief is not None and estimate is not None:
         words, at = "localized" if belief.localized else "not yet localized", beliefs[emitter.emitter_id]
-        if sought.priority is not None:
-            words += f", priority {sought.priority}"
-        events.append(_emitter(key, estimate, at, f"{label}: {words}"))
+        priority = mission.emitter(emitter.emitter_id).priority
+        if priority is not None:
+            words += f", priority {priority}"
+        events.append(_emitter(key, estimate, at, label, words))
         events.append(_ellipse(key, estimate, at, label))
-    for number, fact in enumerate(emitter.bearings, start=1):
-        events.append(_bearing(key, number, fact, times[fact.bearing_id], estimate))
+    of_whom = f"{label} " if len(mission.emitters) > 1 else ""
+    ranges_m = ray_lengths_m(emitter.bearings, estimate)
+    for number, (fact, range_m) in enumerate(zip(emitter.bearings, ranges_m, strict=True), start=1):
+        events.append(_bearing(key, f"{of_whom}bearing {number}", fact, times[fact.bearing_id], range_m))
     return events
 
 
-def _emitter(mission_id: str, estimate: EstimateFact, at: datetime, remarks: str) -> Element:
+def _emitter(mission_id: str, estimate: EstimateFact, at: datetime, label: str, words: str) -> Element:
     radius_m = SIGMAS_95 * estimate.major_axis_m
     event, detail = _event(_uid(mission_id, "emitter"), "a-u-G", at, estimate.lat, estimate.lon, radius_m)
-    SubElement(detail, "contact", callsign=remarks.split(":")[0])
-    SubElement(detail, "remarks").text = f"{remarks}, expected error {estimate.expected_rmse_m:.1f} m"
+    SubElement(detail, "contact", callsign=label)
+    SubElement(detail, "remarks").text = f"{label}: {words}, expected error {estimate.expected_rmse_m:.1f} m"
     return event
 
 
@@ -104,20 +107,13 @@ def _ellipse(mission_id: str, estimate: EstimateFact, at: datetime, label: str) 
     return event
 
 
-def _bearing(
-    mission_id: str, number: int, fact: BearingMeasured, at: datetime, estimate: EstimateFact | None
-) -> Element:
-    event, detail = _event(
-        _uid(mission_id, fact.bearing_id), "u-rb-a", at, fact.place.lat, fact.place.lon, None, fact.altitude_amsl_m
-    )
-    range_m = RAY_M
-    if estimate is not None:
-        away_m, _ = pymap3d.vincenty.vdist(fact.place.lat, fact.place.lon, estimate.lat, estimate.lon)
-        range_m = 1.2 * float(away_m) + 20.0
+def _bearing(mission_id: str, callsign: str, fact: BearingMeasured, at: datetime, range_m: float) -> Element:
+    uid, place = _uid(mission_id, fact.bearing_id), fact.place
+    event, detail = _event(uid, "u-rb-a", at, place.lat, place.lon, None, altitude_amsl_m(fact))
     SubElement(detail, "range", value=f"{range_m:.2f}")
     SubElement(detail, "bearing", value=f"{fact.bearing_deg % 360.0:.2f}")
     SubElement(detail, "inclination", value="0.0")
-    SubElement(detail, "contact", callsign=f"bearing {number}")
+    SubElement(detail, "contact", callsign=callsign)
     SubElement(detail, "remarks").text = f"sigma {fact.sigma_deg:.1f} degrees, quality {fact.quality:.2f}"
     return event
 
@@ -135,13 +131,6 @@ def _event(
     if amsl_m is not None:
         SubElement(detail, "height_amsl", value=f"{amsl_m:.1f}")
     return event, detail
-
-
-def _state(recorded: Sequence[Recorded]) -> SearchState:
-    state = SearchState()
-    for record in recorded:
-        state = evolve(state, record.event, record.at_utc.timestamp())
-    return state
 
 
 def _uid(mission_id: str, what: str) -> str:

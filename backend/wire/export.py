@@ -5,24 +5,36 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 from xml.sax.saxutils import escape
 
+import numpy as np
 import pymap3d.vincenty
 
-from backend.events import FORM, BearingMeasured, CraftSource, MissionStarted, Recorded, SweepStarted
+from backend.events import (
+    FORM,
+    BearingMeasured,
+    CraftSource,
+    EstimateFact,
+    MissionStarted,
+    Recorded,
+    SweepStarted,
+)
 from backend.ports import TrackPoint
 from backend.search.emitter import EmitterState
-from backend.search.state import SearchState, evolve
-from backend.spec import Area, Place
+from backend.search.state import SearchState
+from backend.spec import MissionSpec
 from backend.version import VERSION
+from backend.wire.export_facts import altitude_amsl_m, folded, mission_name, ray_lengths_m, xml_words
+from backend.wire.export_geometry import area_geometry, path_geometry
 
 Tracks = Mapping[str, Sequence[TrackPoint]]
 """The flown paths by craft id."""
-RAY_M = 500.0
-"""Length of a bearing line when there is no estimate to reach."""
+Feature = tuple[dict[str, Any], dict[str, Any]]
+"""A GeoJSON geometry, and properties that begin with what and name."""
 
 
 def journal_json(recorded: Sequence[Recorded], tracks: Tracks) -> str:
@@ -45,42 +57,57 @@ def journal_json(recorded: Sequence[Recorded], tracks: Tracks) -> str:
 
 def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
     """The bearing file of the UAV-RT project, without header: tag id (the emitter's number), sweep, bearing (deg true),
-    quality, lat, lon, altitude above the home (m; theirs is above ground), altitude AMSL (m), start and end (UTC epoch
-    seconds; of a bearing that no craft of the mission took, both are when it was brought in)."""
+    quality, lat, lon, altitude above the home of its craft (m; theirs is above ground), altitude AMSL (m), start and
+    end (UTC epoch seconds; of a bearing that no craft of the mission took, both are when it was brought in). An
+    altitude that is not known is empty."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    emitters = tuple(_state(recorded).emitters.values())
+    emitters = tuple(folded(recorded).emitters.values())
     counted = {fact.bearing_id: number for number, e in enumerate(emitters, start=1) for fact in e.bearings}
-    home_amsl_m, began_s = 0.0, dict[str, float]()
+    homes_amsl_m, began_s = dict[str | None, float](), dict[str | None, float]()
     for record in recorded:
         event = record.event
         if isinstance(event, MissionStarted):
-            home_amsl_m = event.home_amsl_m
+            homes_amsl_m.setdefault(None, event.home_amsl_m)
+            homes_amsl_m[event.craft_id] = event.home_amsl_m
         elif isinstance(event, SweepStarted):
             began_s[event.craft_id] = record.at_utc.timestamp()
         elif isinstance(event, BearingMeasured) and event.bearing_id in counted:
-            place, altitude = event.place, event.altitude_amsl_m
-            row = [
-                counted[event.bearing_id],
-                event.sweep_id or "",
-                f"{event.bearing_deg:.6f}",
-                f"{event.quality:.6f}",
-                f"{place.lat:.8f}",
-            ]
-            row += [f"{place.lon:.8f}", f"{altitude - home_amsl_m:.3f}", f"{altitude:.3f}"]
+            craft_id = event.source.craft_id if isinstance(event.source, CraftSource) else None
+            altitude_m, home_m = altitude_amsl_m(event), homes_amsl_m.get(craft_id)
+            above_m = None if altitude_m is None or home_m is None else altitude_m - home_m
             end_s = record.at_utc.timestamp()
-            start_s = began_s.get(event.source.craft_id, end_s) if isinstance(event.source, CraftSource) else end_s
-            writer.writerow([*row, f"{start_s:.6f}", f"{end_s:.6f}"])
+            start_s = began_s.get(craft_id, end_s)
+            writer.writerow(
+                [
+                    counted[event.bearing_id],
+                    _no_formula(event.sweep_id or ""),
+                    f"{event.bearing_deg:.6f}",
+                    f"{event.quality:.6f}",
+                    f"{event.place.lat:.8f}",
+                    f"{event.place.lon:.8f}",
+                    *("" if metres is None else f"{metres:.3f}" for metres in (above_m, altitude_m)),
+                    f"{start_s:.6f}",
+                    f"{end_s:.6f}",
+                ]
+            )
     return text.getvalue()
+
+
+def _no_formula(text: str) -> str:
+    """A bundle may name a sweep so that a spreadsheet would compute it."""
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
 def geojson(recorded: Sequence[Recorded], tracks: Tracks) -> str:
     """A FeatureCollection; each feature's `what` says what it is."""
-    features = [
-        {"type": "Feature", "geometry": geometry, "properties": properties}
-        for geometry, properties in _features(recorded, tracks)
-    ]
-    return json.dumps({"type": "FeatureCollection", "features": features}, indent=1)
+    return collection(_features(recorded, tracks), indent=1)
+
+
+def collection(features: Iterable[Feature], indent: int | None = None) -> str:
+    """Of those features; on one line without `indent`."""
+    told = [{"type": "Feature", "geometry": geometry, "properties": properties} for geometry, properties in features]
+    return json.dumps({"type": "FeatureCollection", "features": told}, indent=indent)
 
 
 def kml(recorded: Sequence[Recorded], tracks: Tracks) -> str:
@@ -96,7 +123,7 @@ def kml(recorded: Sequence[Recorded], tracks: Tracks) -> str:
             f"<Placemark><name>{_escaped(properties['name'])}</name><styleUrl>#{properties['what']}</styleUrl>"
             f"<ExtendedData>{words}</ExtendedData>{_kml_geometry(geometry)}</Placemark>"
         )
-    name = _escaped(_state(recorded).mission.name)
+    name = _escaped(mission_name(recorded))
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2"><Document>'
         f"<name>{name}</name>{_STYLES}{''.join(parts)}</Document></kml>\n"
@@ -105,53 +132,52 @@ def kml(recorded: Sequence[Recorded], tracks: Tracks) -> str:
 
 _STYLES = "".join(
     f'<Style id="{what}"><LineStyle><color>{colour}</color><width>2</width></LineStyle>'
-    f"<PolyStyle><fill>{fill}</fill><color>{colour}</color></PolyStyle></Style>"
+    f"<PolyStyle><color>{colour}</color><fill>{fill}</fill></PolyStyle></Style>"
     for what, colour, fill in (
         ("area", "ff808080", 0),
         ("no_fly", "ff3030c0", 0),
         ("track", "ffc08020", 0),
         ("bearing", "ff00a5ff", 0),
         ("place", "ff00a5ff", 0),
+        ("listened", "ffa0a000", 0),
         ("estimate", "ff20c020", 0),
         ("c95", "6020c020", 1),
     )
 )
 
 
-def _state(recorded: Sequence[Recorded]) -> SearchState:
-    state = SearchState()
-    for record in recorded:
-        state = evolve(state, record.event, record.at_utc.timestamp())
-    return state
-
-
-def _features(recorded: Sequence[Recorded], tracks: Tracks) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """(geometry, properties) pairs; properties begin with what and name."""
-    state = _state(recorded)
+def _features(recorded: Sequence[Recorded], tracks: Tracks) -> Iterator[Feature]:
+    state = folded(recorded)
     if state.spec is not None:
-        yield _area(state.spec.area), {"what": "area", "name": state.spec.name}
-        for number, zone in enumerate(state.spec.flight.no_fly, start=1):
-            yield _area(zone), {"what": "no_fly", "name": f"no-fly area {number}"}
+        yield from area_features(state.spec, mission_name(recorded))
     for craft_id, track in tracks.items():
-        if len(track) > 1:
-            times = {"from_utc": _time(track[0].at_s), "to_utc": _time(track[-1].at_s)}
-            path = {"type": "LineString", "coordinates": [[p.lon_deg, p.lat_deg] for p in track]}
+        flown = [p for p in track if math.isfinite(p.lat_deg) and math.isfinite(p.lon_deg)]
+        if len(flown) > 1:
+            times = {"from_utc": _time(flown[0].at_s), "to_utc": _time(flown[-1].at_s)}
+            path = path_geometry([[p.lon_deg, p.lat_deg] for p in flown])
             yield path, {"what": "track", "name": "flown path", "craft": craft_id, **times}
     times_utc = {r.event.bearing_id: r.at_utc for r in recorded if isinstance(r.event, BearingMeasured)}
     for emitter in state.emitters.values():
-        yield from _emitter_features(state, emitter, times_utc)
+        yield from emitter_features(state, emitter, times_utc)
 
 
-def _emitter_features(
-    state: SearchState, emitter: EmitterState, times_utc: Mapping[str, datetime]
-) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    belief, estimate = emitter.belief, emitter.belief.estimate if emitter.belief else None
+def area_features(spec: MissionSpec, name: str) -> Iterator[Feature]:
+    """Where is searched and where nobody flies. name: of the mission."""
+    yield area_geometry(spec.area), {"what": "area", "name": name}
+    for number, zone in enumerate(spec.flight.no_fly, start=1):
+        yield area_geometry(zone), {"what": "no_fly", "name": f"no-fly area {number}"}
+
+
+def emitter_features(state: SearchState, emitter: EmitterState, times_utc: Mapping[str, datetime]) -> Iterator[Feature]:
+    """What is known of one emitter. times_utc: by the id of each of its bearings."""
+    belief = emitter.belief
+    estimate = None if belief is None else belief.measured_estimate
     sought = state.mission.emitter(emitter.emitter_id)
-    several: dict[str, Any] = {"emitter": sought.label} if len(state.emitters) > 1 else {}
+    several: dict[str, Any] = {"emitter": state.mission.name_of(emitter.emitter_id)} if len(state.emitters) > 1 else {}
     if sought.priority is not None:
         several["priority"] = sought.priority
-    target = Place(lat=estimate.lat, lon=estimate.lon) if estimate else None
-    for number, fact in enumerate(emitter.measured, start=1):
+    ends = _ray_ends(emitter.measured, estimate)
+    for number, (fact, end) in enumerate(zip(emitter.measured, ends, strict=True), start=1):
         properties = {
             "name": f"bearing {number}",
             **several,
@@ -163,8 +189,7 @@ def _emitter_features(
         }
         here = [fact.place.lon, fact.place.lat]
         yield {"type": "Point", "coordinates": here}, {"what": "place", **properties}
-        ray = {"type": "LineString", "coordinates": [here, _ray_end(fact, target)]}
-        yield ray, {"what": "bearing", **properties}
+        yield path_geometry([here, end]), {"what": "bearing", **properties}
     for leg in emitter.ways:
         for stretch in leg.stretches:
             line = [[place.lon, place.lat] for place in (stretch.begin, stretch.end)]
@@ -174,7 +199,7 @@ def _emitter_features(
                 "turned_deg": stretch.turned_deg,
                 "excluded": leg not in emitter.legs,
             }
-            yield {"type": "LineString", "coordinates": line}, {"what": "listened", **properties}
+            yield path_geometry(line), {"what": "listened", **properties}
     if belief is not None and estimate is not None:
         properties = {
             **several,
@@ -185,21 +210,16 @@ def _emitter_features(
         point = {"type": "Point", "coordinates": [estimate.lon, estimate.lat]}
         yield point, {"what": "estimate", "name": "estimate", **properties}
         area_m2 = {"area_m2": estimate.c95_area_m2}
-        yield _area(estimate.c95), {"what": "c95", "name": "95 % region", **properties, **area_m2}
+        yield area_geometry(estimate.c95), {"what": "c95", "name": "95 % region", **properties, **area_m2}
 
 
-def _ray_end(fact: BearingMeasured, target: Place | None) -> list[float]:
-    """As far as the estimate and a little more."""
-    length_m = RAY_M
-    if target is not None:
-        away_m, _ = pymap3d.vincenty.vdist(fact.place.lat, fact.place.lon, target.lat, target.lon)
-        length_m = 1.2 * float(away_m) + 20.0
-    lat, lon = pymap3d.vincenty.vreckon(fact.place.lat, fact.place.lon, length_m, fact.bearing_deg)
-    return [(float(lon) + 180.0) % 360.0 - 180.0, float(lat)]
-
-
-def _area(area: Area) -> dict[str, Any]:
-    return area.model_dump(mode="json")
+def _ray_ends(facts: Sequence[BearingMeasured], estimate: EstimateFact | None) -> list[list[float]]:
+    """Longitude and latitude, of all at once: one by one they take most of an export's time."""
+    if not facts:
+        return []
+    rows = np.array([(fact.place.lat, fact.place.lon, fact.bearing_deg) for fact in facts])
+    lat, lon = pymap3d.vincenty.vreckon(rows[:, 0], rows[:, 1], ray_lengths_m(facts, estimate), rows[:, 2])
+    return np.column_stack([(lon + 180.0) % 360.0 - 180.0, lat]).tolist()
 
 
 def _time(at_s: float) -> str:
@@ -207,8 +227,7 @@ def _time(at_s: float) -> str:
 
 
 def _escaped(value: object) -> str:
-    """XML 1.0 has no control characters, not even escaped."""
-    return escape("".join(c for c in str(value) if c in "\t\n" or ord(c) >= 32))
+    return escape(xml_words(value))
 
 
 def _quoted(value: str) -> str:
@@ -221,11 +240,17 @@ def _kml_geometry(geometry: dict[str, Any]) -> str:
         case "Point":
             return f"<Point>{_kml_coordinates([coordinates])}</Point>"
         case "LineString":
-            return f"<LineString><tessellate>1</tessellate>{_kml_coordinates(coordinates)}</LineString>"
+            return _kml_line(coordinates)
         case "Polygon":
             return _kml_polygon(coordinates)
+        case "MultiLineString":
+            return f"<MultiGeometry>{''.join(map(_kml_line, coordinates))}</MultiGeometry>"
         case _:
             return f"<MultiGeometry>{''.join(_kml_polygon(rings) for rings in coordinates)}</MultiGeometry>"
+
+
+def _kml_line(places: list[list[float]]) -> str:
+    return f"<LineString><tessellate>1</tessellate>{_kml_coordinates(places)}</LineString>"
 
 
 def _kml_polygon(rings: list[list[list[float]]]) -> str:

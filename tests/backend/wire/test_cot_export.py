@@ -9,7 +9,9 @@ from xml.etree import ElementTree
 
 import pytest
 from narrowing import known
+from small_missions import numbered
 
+from backend.events import MissionLabelled
 from backend.wire.cot_export import cot_events, cot_package
 
 
@@ -70,6 +72,14 @@ def test_the_package_names_every_file_it_holds(recorded) -> None:
             assert ElementTree.fromstring(archive.read(known(name))).tag == "event"
         names = {each.get("name"): each.get("value") for each in manifest.iter("Parameter")}
         assert names["name"] == 'Meadow "A" & <B>'
+
+
+def test_the_package_is_called_what_the_mission_was_renamed_to(recorded) -> None:
+    label = MissionLabelled(name="Owl\uffff 7", tags=[], notes="", by="op")
+    renamed = numbered([*(record.event for record in recorded), label])
+    with zipfile.ZipFile(io.BytesIO(cot_package(renamed, {}))) as archive:
+        manifest = ElementTree.fromstring(archive.read("MANIFEST/manifest.xml"))
+    assert "Owl 7" in [each.get("value") for each in manifest.iter("Parameter")]
 
 
 def test_without_an_estimate_there_are_bearings_only(recorded) -> None:
