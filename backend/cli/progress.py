@@ -11,8 +11,8 @@ def progress_line(event: Event) -> str | None:
     match event:
         case PhaseChanged(craft_id=craft_id, after=after, reason=reason):
             return f"{craft_id}: {after.replace('_', ' ')}: {text_of(reason)}"
-        case BeliefUpdated(emitter_id=emitter_id, estimate=estimate, localized=localized) if estimate is not None:
-            known = "localized" if localized else "not yet localized"
+        case BeliefUpdated(emitter_id=emitter_id, measured_estimate=estimate) if estimate is not None:
+            known = "localized" if event.localized else "not yet localized"
             return f"{emitter_id}: {known}, expected error {estimate.expected_rmse_m:.1f} m"
         case AlertRaised(level=level, reason=reason):
             return f"{level}: {sentence_of(reason)}"

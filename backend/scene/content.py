@@ -268,7 +268,7 @@ def _estimates(story: Story) -> tuple[EstimateMark, ...]:
     search = story.state.search
     marks: list[EstimateMark] = []
     for emitter in search.emitters.values():
-        if emitter.belief is None or (found := emitter.belief.estimate) is None:
+        if emitter.belief is None or (found := emitter.belief.measured_estimate) is None:
             continue
         x, y = story.frame.to_enu(Place(found.lat, found.lon))
         region = areas.area_geometry(found.c95, story.frame, "c95", "confidence_region")

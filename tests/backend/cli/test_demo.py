@@ -142,4 +142,5 @@ def test_progress_tells_of_phases_and_estimates_and_little_else() -> None:
     changed = PhaseChanged(craft_id=FIRST_CRAFT, before="measuring", after="returning", reason=Localized())
     assert progress_line(changed) == "craft-1: returning: Localized: the expected error is within the goal."
     assert progress_line(belief(3.0, 10.0)) == "emitter-1: localized, expected error 4.0 m"
+    assert progress_line(belief(3.0, 10.0).model_copy(update={"bearings": 0})) is None
     assert progress_line(SweepStarted(craft_id=FIRST_CRAFT, place_number=1, attempt=1)) is None
