@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Annotated
@@ -21,6 +22,8 @@ from backend.store.digest import MissionDigest
 from backend.store.reading import Wanted
 from backend.wire.library import Calibration, MissionLabels, TruthTold
 from backend.wire.resources import Mission, MissionSummary
+
+log = logging.getLogger("crossfix.api")
 
 router = APIRouter(prefix="/api", tags=["library"], responses=PROBLEM_RESPONSES)
 
@@ -83,12 +86,17 @@ def _known(services: Services, checked: Sequence[MissionDigest]) -> dict[str, To
 
 
 async def _reckoned(services: Services, checked: Sequence[MissionDigest]) -> dict[str, Told]:
-    """Out of their facts, and kept; without the damaged ones, which say so in the log and when they are opened."""
+    """Out of their facts, and kept; without the damaged ones, which say so in the log and when they are opened, and
+    those that cannot be reckoned with: one mission takes the page from nobody."""
     found: dict[str, Told] = {}
     for digest in checked:
         with suppress(JournalDamaged):
             recorded = await services.journal.read_kinds(digest.mission_id, FACTS_NEEDED)
-            found[digest.mission_id] = await asyncio.to_thread(told, recorded)
+            try:
+                found[digest.mission_id] = await asyncio.to_thread(told, recorded)
+            except Exception:
+                log.exception("mission %s is left out of the calibration", digest.mission_id)
+                continue
             await asyncio.to_thread(services.told.keep, digest, found[digest.mission_id])
     return found
 

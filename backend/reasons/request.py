@@ -282,8 +282,8 @@ class BundleFactWrong:
         "|region=tells a 95 % region that is no area|spread=tells an uncertainty or a number that cannot be"
         "|unknown_bearing=leaves out, or takes in again, a bearing that there is not"
         "|not_started=tells of a craft that had not started"
-        "|name=gives a name whose characters turn the direction of writing|id=names a sweep with characters that no id "
-        "has}.",
+        "|name=gives a name whose characters turn the direction of writing"
+        "|id=names a sweep with characters that no id has}.",
         "Nothing was brought in. Choose the zip file that “All of it” saves under “Take away”, unchanged.",
     )
 
