@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pydantic import ValidationError
-from shapely import MultiPolygon, Polygon
-from shapely.geometry import shape
+from shapely import GEOSException, MultiPolygon, Polygon
 from shapely.ops import unary_union
 
 from backend import spec
@@ -17,7 +17,9 @@ from backend.maps.kml import read_kml
 from backend.maps.refusal import MapRefused
 from backend.reasons import Reason
 from backend.reasons.maps import NoPolygon, NotAreas, PolygonsUnited
+from backend.reasons.search import OutlineUnusable
 from backend.search.area import area_geometry
+from backend.search.covering import in_one_piece
 from backend.search.errors import MissionInputError
 from backend.wire.resources import AreaImport, AreaUpload
 from hardware.frame import LocalFrame
@@ -81,7 +83,10 @@ def _united(polygons: Sequence[list[Any]], notes: list[Reason]) -> tuple[spec.Ar
     )
     lon, lat = drawn.coordinates[0][0][0]
     metric = area_geometry(drawn, LocalFrame(Place(lat, lon)), "text", "area")
-    united = unary_union([shape({"type": "Polygon", "coordinates": rings}) for rings in polygons])
+    try:
+        united = unary_union(list(in_one_piece(drawn.coordinates).geoms))
+    except GEOSException as error:  # that is sound in metres, and not in degrees
+        raise MissionInputError(OutlineUnusable("area", "not_simple"), "text") from error
     parts = list(united.geoms) if isinstance(united, MultiPolygon) else [united]
     if len(parts) < len(polygons):
         notes.append(PolygonsUnited(len(polygons), len(parts)))
@@ -91,4 +96,8 @@ def _united(polygons: Sequence[list[Any]], notes: list[Reason]) -> tuple[spec.Ar
 
 
 def _rings(polygon: Polygon) -> list[list[spec.LonLat]]:
-    return [[(x, y) for x, y in ring.coords] for ring in (polygon.exterior, *polygon.interiors)]
+    return [[(_on_earth(x), y) for x, y in ring.coords] for ring in (polygon.exterior, *polygon.interiors)]
+
+
+def _on_earth(lon_deg: float) -> float:
+    return lon_deg if -180.0 <= lon_deg <= 180.0 else math.remainder(lon_deg, 360.0)

@@ -7,7 +7,6 @@ from typing import Annotated
 
 import pymap3d.vincenty
 from fastapi import APIRouter, Path
-from shapely.geometry import Point, shape
 
 from backend.api.another_antenna import AnotherAntenna, another_antenna
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
@@ -28,6 +27,7 @@ from backend.events import (
 from backend.events.review import VariantName
 from backend.mission.review import variants_of
 from backend.reasons import Reason
+from backend.search.covering import covers
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.spec import Place
 from backend.wire.courses import Course, CoursePoint, MissionCourses
@@ -149,7 +149,7 @@ def _point(t_s: float, bearings: int, then: BeliefUpdated, truth: Place | None) 
     error_m = inside = None
     if estimate is not None and truth is not None:
         error_m = float(pymap3d.vincenty.vdist(estimate.lat, estimate.lon, truth.lat, truth.lon)[0])
-        inside = bool(shape(estimate.c95.model_dump()).covers(Point(truth.lon, truth.lat)))
+        inside = covers(estimate.c95, truth)
     return CoursePoint(
         t_s=t_s,
         bearings=bearings,

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import pairwise
 
-from shapely.geometry import Point, shape
-
 from backend.events import (
     AntennaFact,
     BeliefUpdated,
@@ -26,6 +24,7 @@ from backend.events import (
     TruthNoted,
 )
 from backend.search.counted import counted
+from backend.search.covering import covers
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -152,7 +151,7 @@ def _fixes(recorded: Sequence[Recorded], known: Mapping[str, Place]) -> Iterable
         if belief is None or estimate is None or belief.bearings == 0:
             continue
         east, north = LocalFrame(place).to_enu(Place(lat=estimate.lat, lon=estimate.lon))
-        inside = bool(shape(estimate.c95.model_dump()).covers(Point(place.lon, place.lat)))
+        inside = covers(estimate.c95, place)
         yield ToldFix(emitter_id, math.hypot(east, north), estimate.expected_rmse_m, inside, belief.localized)
 
 

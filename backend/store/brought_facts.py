@@ -26,12 +26,9 @@ from backend.events import (
 )
 from backend.names import TURNS_WRITING
 from backend.reasons.request import BundleFactWrong, FactFault
-from backend.spec import Area, Polygon
+from backend.search.covering import is_region
 
 OfEmitter = BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected | HeardOnTheWay
-
-FEWEST_CORNERS = 4
-"""Of a closed ring."""
 
 
 @dataclass(slots=True)
@@ -89,12 +86,7 @@ def _estimate(estimate: EstimateFact) -> FactFault | None:
     if not on_earth(estimate.lat, estimate.lon):
         return "place"
     spreads = (estimate.expected_rmse_m, estimate.c95_area_m2, estimate.major_axis_m, estimate.minor_axis_m)
-    return "spread" if min(spreads) < 0.0 else None if _is_region(estimate.c95) else "region"
-
-
-def _is_region(area: Area) -> bool:
-    polygons = [area.coordinates] if isinstance(area, Polygon) else area.coordinates
-    return bool(polygons) and all(rings and all(len(ring) >= FEWEST_CORNERS for ring in rings) for rings in polygons)
+    return "spread" if min(spreads) < 0.0 else None if is_region(estimate.c95) else "region"
 
 
 def _ids(ids: Iterable[str]) -> FactFault | None:

@@ -1,7 +1,7 @@
 // The missions of the list on one map: from afar a dot each, together where they lie close; from near their areas. A click opens.
 import { type GeoJSONSource, type Map as GlMap, type MapMouseEvent, Popup } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
-import { boundsOf } from "../state/geometry";
+import { beside, boundsOf, together } from "../state/geometry";
 import { go, missionAddress } from "../state/route";
 import { settings } from "../state/settings";
 import type { MissionSummary } from "../wire";
@@ -18,11 +18,11 @@ const EVERYWHERE: [number, number, number, number] = [-150, -50, 170, 70];
 const MARGIN_PX = 60;
 const EUROPE: LonLat = [7.1, 50.73];
 
-const outlineOf = ({ sketch }: MissionSummary) => sketch.outline as LonLat[][];
+const outlineOf = ({ sketch }: MissionSummary) => (sketch.outline as LonLat[][]).map(together);
 
 function middleOf(mission: MissionSummary): LonLat | null {
   const box = boundsOf(outlineOf(mission).flat());
-  return box && [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+  return box && [beside((box[0] + box[2]) / 2, 0), (box[1] + box[3]) / 2];
 }
 
 const collection = (features: GeoJSON.Feature[]): GeoJSON.FeatureCollection => ({ type: "FeatureCollection", features });

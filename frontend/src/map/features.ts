@@ -4,7 +4,7 @@ import type { MissionWays } from "../sources/waysApi";
 import { rankCandidates, roundShade } from "../state/candidates";
 import type { EmitterState } from "../state/emitter";
 import { emitterColour } from "../state/emitterColours";
-import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
+import { beside, boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
 import { marginOutline } from "../state/margin";
 import { polarScale, radius } from "../state/polar";
 import type { MissionView } from "../state/view";
@@ -90,10 +90,11 @@ function rayLengths(spec: MissionSpec | null): (at: LonLat, bearing: number) => 
   const flown = flightPoints(spec);
   return (at, bearing) => {
     const box = boundsOf([...flown, at])!;
-    const ahead = destination(at, bearing, 1);
+    const from: LonLat = [beside(at[0], (box[0] + box[2]) / 2), at[1]];
+    const ahead = destination(from, bearing, 1);
     const leaves = ([0, 1] as const).map((axis) => {
-      const step = ahead[axis] - at[axis];
-      return step === 0 ? reach : (box[step > 0 ? axis + 2 : axis]! - at[axis]) / step;
+      const step = ahead[axis] - from[axis];
+      return step === 0 ? reach : (box[step > 0 ? axis + 2 : axis]! - from[axis]) / step;
     });
     return Math.min(reach, Math.max(reach / 6, Math.min(...leaves)));
   };

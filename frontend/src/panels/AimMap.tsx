@@ -3,7 +3,7 @@
 import { useMemo } from "preact/hooks";
 import { t } from "../i18n";
 import type { Bearing } from "../state/emitter";
-import { bearingDeg, boundsOf, destination, distanceM, metresPerDegree } from "../state/geometry";
+import { bearingDeg, beside, boundsOf, destination, distanceM, metresPerDegree } from "../state/geometry";
 import type { Drawn } from "../state/ways";
 import type { Area, Place } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
@@ -46,7 +46,7 @@ function frameOf(points: readonly LonLat[]): Frame {
   const side = Math.max((east - west) * mx, (north - south) * my, LEAST_M) * (1 + MARGIN);
   const scale = SIZE / side;
   return {
-    at: ([lon, lat]) => [SIZE / 2 + (lon - middle[0]) * mx * scale, SIZE / 2 - (lat - middle[1]) * my * scale],
+    at: ([lon, lat]) => [SIZE / 2 + (beside(lon, middle[0]) - middle[0]) * mx * scale, SIZE / 2 - (lat - middle[1]) * my * scale],
     back: (x, y) => [middle[0] + (x - SIZE / 2) / scale / mx, middle[1] - (y - SIZE / 2) / scale / my],
     reach: side * 1.5,
     middle,

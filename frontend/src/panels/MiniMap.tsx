@@ -1,6 +1,6 @@
 // A mission as a small map: its area, where bearings were taken, what was found, what is known since.
 import { t } from "../i18n";
-import { boundsOf } from "../state/geometry";
+import { beside, boundsOf } from "../state/geometry";
 import type { MissionSummary } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 
@@ -19,7 +19,7 @@ export function MiniMap({ sketch }: { sketch: MissionSummary["sketch"] }) {
   const [across, up] = [Math.max((east - west) * squeeze, 1e-5), Math.max(north - south, 1e-5)];
   const scale = Math.min((WIDTH - 2 * MARGIN) / across, (HEIGHT - 2 * MARGIN) / up);
   const [left, top] = [(WIDTH - across * scale) / 2, (HEIGHT - up * scale) / 2];
-  const at = ([lon, lat]: LonLat): [number, number] => [left + (lon - west) * squeeze * scale, top + (north - lat) * scale];
+  const at = ([lon, lat]: LonLat): [number, number] => [left + (beside(lon, west) - west) * squeeze * scale, top + (north - lat) * scale];
   return (
     <svg class="mini-map" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={t("missions.map")} data-testid="mini-map">
       {outline.map((ring, i) => (

@@ -1,6 +1,7 @@
 // A rectangle drawn over the missions shown: only those whose area it meets are listed.
 import { useRef, useState } from "preact/hooks";
 import { t } from "../i18n";
+import { beside } from "../state/geometry";
 import type { MissionSummary } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 
@@ -64,7 +65,11 @@ export function PlaceFilter({ around, missions, box, onBox }: Properties) {
       >
         {missions.flatMap((mission) =>
           (mission.sketch.outline as LonLat[][]).map((ring, i) => (
-            <path class="mini-area" d={`M${ring.map((p) => xy(p).join(" ")).join("L")}Z`} key={`${mission.mission_id} ${i}`}>
+            <path
+              class="mini-area"
+              d={`M${ring.map(([lon, lat]) => xy([beside(lon, (west + east) / 2), lat]).join(" ")).join("L")}Z`}
+              key={`${mission.mission_id} ${i}`}
+            >
               <title>{mission.name}</title>
             </path>
           )),

@@ -1,7 +1,7 @@
 // The map of the report: drawn as lines, so that it prints sharp, needs no graphics card and no map package.
 import { t } from "../i18n";
 import { polygonsOf } from "../state/areas";
-import { boundsOf, destination, distanceM, lonLat } from "../state/geometry";
+import { beside, boundsOf, destination, distanceM, lonLat } from "../state/geometry";
 import { settings } from "../state/settings";
 import type { MissionView } from "../state/view";
 import { formatLength } from "../units/quantities";
@@ -27,7 +27,7 @@ export function ReportMap({ view }: { view: MissionView }) {
   const scale = Math.min((WIDTH - 2 * MARGIN) / ((east - west) * squeeze), (HEIGHT - 2 * MARGIN) / (north - south));
   const left = (WIDTH - (east - west) * squeeze * scale) / 2;
   const top = (HEIGHT - (north - south) * scale) / 2;
-  const at = ([lon, lat]: LonLat) => [left + (lon - west) * squeeze * scale, top + (north - lat) * scale] as const;
+  const at = ([lon, lat]: LonLat) => [left + (beside(lon, west) - west) * squeeze * scale, top + (north - lat) * scale] as const;
   const path = (ring: readonly LonLat[]) =>
     `M${ring
       .map((p) =>

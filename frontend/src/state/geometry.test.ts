@@ -54,6 +54,26 @@ it("measures how far a region reaches, and which way", () => {
   expect(extent([])).toEqual({ metres: 0, bearing: 0 });
 });
 
+it("measures across the antimeridian as anywhere else", () => {
+  const wrapped = (points: LonLat[]) => points.map(([lon, lat]): LonLat => [((lon + 540) % 360) - 180, lat]);
+  const ring = circle([179.999, -17], 300);
+  const over = wrapped(ring);
+  expect(over.some(([lon]) => lon < 0)).toBe(true);
+  expect(distanceM(over[0]!, over[36]!)).toBeCloseTo(600, 1);
+  expect(bearingDeg([179.999, -17], [-179.999, -17])).toBeCloseTo(90, 2);
+  expect(extent(over).metres).toBeCloseTo(extent(ring).metres, 6);
+  expect(ringAreaM2(over)).toBeCloseTo(ringAreaM2(ring), 3);
+  const [west, , east] = boundsOf(over)!;
+  expect(east - west).toBeCloseTo(boundsOf(ring)![2] - boundsOf(ring)![0], 9);
+  expect(
+    boundsOf([
+      [-170, 0],
+      [20, 0],
+      [10, 1],
+    ]),
+  ).toEqual([-170, 0, 20, 1]);
+});
+
 it("finds the same reach as asking every pair of corners, of any shape", () => {
   let state = 7;
   const random = () => {

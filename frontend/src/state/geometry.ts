@@ -19,9 +19,15 @@ export function metresPerDegree(latDeg: number): [number, number] {
 export const lonLat = (place: Place): LonLat => [place.lon, place.lat];
 export const place = ([lon, lat]: LonLat): Place => ({ lat, lon });
 
+/** The same meridian, at most half a turn from another: a mission may lie across the antimeridian. */
+export const beside = (lon: number, other: number): number => lon + 360 * Math.round((other - lon) / 360);
+
+/** Beside the first of them. */
+export const together = (points: readonly LonLat[]): LonLat[] => points.map(([lon, lat]) => [beside(lon, points[0]![0]), lat]);
+
 export function distanceM(a: LonLat, b: LonLat): number {
   const [mx, my] = metresPerDegree((a[1] + b[1]) / 2);
-  return Math.hypot((b[0] - a[0]) * mx, (b[1] - a[1]) * my);
+  return Math.hypot((beside(b[0], a[0]) - a[0]) * mx, (b[1] - a[1]) * my);
 }
 
 /** The point `metres` from `from` in compass direction `bearingDeg`. */
@@ -34,7 +40,7 @@ export function destination(from: LonLat, bearingDeg: number, metres: number): L
 /** Compass bearing from a to b, [0, 360). */
 export function bearingDeg(a: LonLat, b: LonLat): number {
   const [mx, my] = metresPerDegree((a[1] + b[1]) / 2);
-  return (Math.atan2((b[0] - a[0]) * mx, (b[1] - a[1]) * my) / RAD + 360) % 360;
+  return (Math.atan2((beside(b[0], a[0]) - a[0]) * mx, (b[1] - a[1]) * my) / RAD + 360) % 360;
 }
 
 export function circle(centre: LonLat, radiusM: number, corners = 72): LonLat[] {
@@ -44,7 +50,7 @@ export function circle(centre: LonLat, radiusM: number, corners = 72): LonLat[] 
 
 /** How far the two points are apart that lie farthest from each other, and the compass bearing of their line, [0, 180). */
 export function extent(points: readonly LonLat[]): { metres: number; bearing: number } {
-  const corners = hull(points);
+  const corners = hull(together(points));
   let [from, to, metres] = [corners[0], corners[0], 0];
   for (const [a, b] of antipodal(corners)) {
     const apart = distanceM(a, b);
@@ -90,9 +96,17 @@ export function wedge(apex: LonLat, bearing: number, halfWidthDeg: number, lengt
   return [apex, ...arc, apex];
 }
 
-/** [west, south, east, north] of a set of points; null when there is none. */
-export function boundsOf(points: readonly LonLat[]): [number, number, number, number] | null {
+type Box = [number, number, number, number];
+
+/** [west, south, east, north] of a set of points, beyond 180 degrees where it is narrower across the antimeridian; null
+ * when there is none. */
+export function boundsOf(points: readonly LonLat[]): Box | null {
   if (points.length === 0) return null;
+  const [plain, across] = [boxOf(points), boxOf(together(points))];
+  return across[2] - across[0] < plain[2] - plain[0] ? across : plain;
+}
+
+function boxOf(points: readonly LonLat[]): Box {
   let [west, south, east, north] = [Infinity, Infinity, -Infinity, -Infinity];
   for (const [lon, lat] of points) {
     west = Math.min(west, lon);
@@ -104,7 +118,8 @@ export function boundsOf(points: readonly LonLat[]): [number, number, number, nu
 }
 
 /** Area of a ring in m^2 (shoelace on the tangent plane in its middle), without sign: the same from whichever corner. */
-export function ringAreaM2(ring: readonly LonLat[]): number {
+export function ringAreaM2(corners: readonly LonLat[]): number {
+  const ring = together(corners);
   const origin = boundsOf(ring);
   if (!origin) return 0;
   const [mx, my] = metresPerDegree((origin[1] + origin[3]) / 2);

@@ -15,6 +15,26 @@ it("knows what a region covers, holes and several parts too", () => {
   expect([1, 5, 20.5, 15].map((at) => covers(area, [at, at]))).toEqual([true, false, true, false]);
 });
 
+it("knows it of a region across the antimeridian", () => {
+  const corners: [number, number][] = [
+    [179.995, 50],
+    [-179.995, 50],
+    [-179.995, 50.01],
+    [179.995, 50.01],
+    [179.995, 50],
+  ];
+  const area = { type: "Polygon" as const, coordinates: [corners] };
+  expect([179.996, 180, -180, -179.996, 179.99, -179.99, 0].map((lon) => covers(area, [lon, 50.005]))).toEqual([
+    true,
+    true,
+    true,
+    true,
+    false,
+    false,
+    false,
+  ]);
+});
+
 it("says how far off the estimate was", () => {
   const estimate = {
     lat: 50,

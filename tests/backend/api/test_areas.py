@@ -7,9 +7,12 @@ import json
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from shapely import GEOSException
 
+from backend.api import areas
 from backend.api.areas import read_area
 from backend.reasons.maps import NotAreas, PolygonsUnited
+from backend.reasons.search import OutlineUnusable
 from backend.search.errors import MissionInputError
 from backend.wire.resources import AreaUpload
 from planner.reason import remedy_of
@@ -97,3 +100,31 @@ def test_what_is_wrong_is_said_in_a_sentence(document, says):
 def test_no_text_makes_it_stumble(text):
     with pytest.raises(MissionInputError):
         read_area(AreaUpload(text=text))
+
+
+EAST = [[179.995, 50.0], [180.0, 50.0], [180.0, 50.005], [179.995, 50.005], [179.995, 50.0]]
+WEST = [[-180.0, 50.0], [-179.995, 50.0], [-179.995, 50.005], [-180.0, 50.005], [-180.0, 50.0]]
+ACROSS = [[179.995, 50.0], [-179.995, 50.0], [-179.995, 50.005], [179.995, 50.005], [179.995, 50.0]]
+BESIDE_IT = [[179.999, 50.001], [-179.999, 50.001], [-179.999, 50.002], [179.999, 50.001]]
+
+
+@pytest.mark.parametrize("rings", [[[ACROSS]], [[EAST], [WEST]], [[ACROSS], [BESIDE_IT]], [[ACROSS, BESIDE_IT]]])
+def test_an_area_across_the_antimeridian_is_one(rings):
+    """As drawn, as an export cut it in two, and with what an export has beside it."""
+    found, area = read({"type": "MultiPolygon", "coordinates": rings})
+    assert area["type"] == "Polygon"
+    lons = [lon for lon, _ in area["coordinates"][0]]
+    assert all(-180.0 <= lon <= 180.0 for lon in lons)
+    assert (min(abs(lon) for lon in lons), min(lons) < 0.0 < max(lons)) == (pytest.approx(179.995), True)
+    hole = 0.5 * 143.4 * 111.2 if len(rings[0]) > 1 else 0.0
+    assert found.area_m2 == pytest.approx(717.0 * 556.2 - hole, rel=0.02)
+
+
+def test_an_outline_that_the_geometry_library_cannot_unite_is_refused(monkeypatch):
+    def broken(shapes):
+        raise GEOSException("TopologyException: side location conflict")
+
+    monkeypatch.setattr(areas, "unary_union", broken)
+    with pytest.raises(MissionInputError) as refused:
+        read(POLYGON)
+    assert refused.value.reason == OutlineUnusable("area", "not_simple")
