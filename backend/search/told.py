@@ -41,7 +41,7 @@ FACTS_NEEDED = (
     "belief_updated",
     "truth_noted",
 )
-RECKONING = 2
+RECKONING = 3
 """Of `told`: one more with every change of what it says, since what it said is kept."""
 LEAST_SIGMA_DEG = 0.1
 
@@ -89,7 +89,7 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class ToldForecast:
-    """What a plan said of the time until localized, and what it took from there."""
+    """What a plan said of the time until all that it was made for are localized, and what it took from there."""
 
     time_90_s: float
     took_s: float
@@ -98,7 +98,7 @@ class ToldForecast:
 @dataclass(frozen=True, slots=True)
 class Told:
     """not_found: emitters that were looked for in vain. flown: by craft, of every craft that has an error. forecasts:
-    of a search that localized."""
+    of plans whose emitters were localized."""
 
     crafts: list[str]
     antennas: list[str]
@@ -192,9 +192,24 @@ def _legs(recorded: Sequence[Recorded]) -> Iterable[Leg]:
 
 
 def _forecasts(recorded: Sequence[Recorded]) -> Iterable[ToldForecast]:
-    done = next((r.at_utc for r in recorded if isinstance(r.event, BeliefUpdated) and r.event.localized), None)
-    if done is None:
-        return
+    """A plan's times are until the last one is localized that it was made for; one that never was tells nothing."""
+    emitters: list[str] = []
+    claimed: set[str] = set()
+    waiting: list[tuple[datetime, float, set[str]]] = []
     for record in recorded:
-        if isinstance(record.event, PlanChosen) and record.event.time_90_s is not None and record.at_utc < done:
-            yield ToldForecast(record.event.time_90_s, (done - record.at_utc).total_seconds())
+        match record.event:
+            case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
+                emitters = [emitter.emitter_id for emitter in spec.emitters]
+            case PlanChosen(time_90_s=time_90_s, emitter_id=one, forecasts=each) if time_90_s is not None:
+                planned_for = [one] if one is not None else [of.emitter_id for of in each] or emitters
+                waiting.append((record.at_utc, time_90_s, set(planned_for) - claimed))
+            case BeliefUpdated(emitter_id=emitter_id, localized=False):
+                claimed.discard(emitter_id)
+            case BeliefUpdated(emitter_id=emitter_id):
+                claimed.add(emitter_id)
+                for at_utc, time_90_s, missing in waiting:
+                    if missing == {emitter_id} and at_utc < record.at_utc:
+                        yield ToldForecast(time_90_s, (record.at_utc - at_utc).total_seconds())
+                    missing.discard(emitter_id)
+            case _:
+                pass

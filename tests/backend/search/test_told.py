@@ -7,19 +7,21 @@ import hashlib
 import json
 import math
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from facts import SECOND, TWO_SPEC, belief, plan
 from pydantic import TypeAdapter
 
-from backend.events import BeliefUpdated, Recorded, TruthNoted
+from backend.events import BeliefUpdated, Event, ForecastFact, MissionDrafted, PlanChosen, Recorded, TruthNoted
 from backend.search.told import RECKONING, Told, sound, told
 from backend.settings import REPOSITORY
-from backend.spec import Place
+from backend.spec import FIRST_EMITTER, Place
 from backend.store.entries import EventRow, to_records
 from backend.store.upgrade import FIRST_FORM
 
 STORED = json.loads(gzip.decompress((REPOSITORY / "tests/golden/journals/demo-px4-open.json.gz").read_bytes()))
-TOLD = {2: "8dbac0a7058ce78d"}
+TOLD = {3: "8dbac0a7058ce78d"}
 """By reckoning, the digest of what the stored flight tells."""
 
 
@@ -65,3 +67,54 @@ def test_what_cannot_have_been_told_is_not_sound() -> None:
     assert not any(sound(replace(said, errors=[one])) for one in odd)
     assert not sound(replace(said, fixes=[replace(said.fixes[0], error_m=math.nan)]))
     assert not sound(replace(said, forecasts=[replace(said.forecasts[0], took_s=math.inf)]))
+
+
+BEGAN = datetime(2026, 5, 1, 12, tzinfo=UTC)
+
+
+def planned(emitter_id: str | None, time_90_s: float, *for_each: str) -> PlanChosen:
+    each = [ForecastFact(emitter_id=one, expected_time_s=None) for one in for_each]
+    return plan().model_copy(update={"emitter_id": emitter_id, "time_90_s": time_90_s, "forecasts": each})
+
+
+def forecasts(*facts: tuple[float, Event]) -> list[tuple[float, float]]:
+    """What they were and took, of a search for two emitters. facts: with their second."""
+    drafted = (0.0, MissionDrafted(spec=TWO_SPEC))
+    recorded = [
+        Recorded(seq=seq, mission_id="m", at_utc=BEGAN + timedelta(seconds=at_s), event=fact)
+        for seq, (at_s, fact) in enumerate([drafted, *facts], start=1)
+    ]
+    return [(one.time_90_s, one.took_s) for one in told(recorded).forecasts]
+
+
+FIRST = FIRST_EMITTER
+
+
+def test_a_forecast_is_held_against_the_emitters_that_it_was_made_for() -> None:
+    assert forecasts(
+        (10.0, planned(FIRST, 60.0)),
+        (20.0, planned(SECOND, 400.0)),
+        (50.0, belief(1, localized=True)),
+        (60.0, planned(SECOND, 300.0)),
+        (650.0, belief(2, localized=True, emitter_id=SECOND)),
+    ) == [(60.0, 40.0), (400.0, 630.0), (300.0, 590.0)]
+
+
+def test_a_plan_for_several_takes_until_the_last_of_them_is_claimed() -> None:
+    both = (planned(None, 90.0, FIRST, SECOND), planned(None, 90.0))
+    for plan_for_both in both:
+        claims = ((30.0, belief(1, localized=True)), (80.0, belief(2, localized=True, emitter_id=SECOND)))
+        assert forecasts((10.0, plan_for_both), *claims) == [(90.0, 70.0)]
+        assert forecasts((10.0, plan_for_both), claims[0]) == [], "the other was never found"
+        assert forecasts(claims[0], (40.0, planned(None, 90.0)), claims[1]) == [(90.0, 40.0)], "one was found before"
+
+
+def test_what_is_lost_again_is_waited_for_again() -> None:
+    lost = belief(2, localized=False)
+    assert forecasts(
+        (10.0, planned(FIRST, 60.0)),
+        (30.0, belief(1, localized=True)),
+        (40.0, lost),
+        (50.0, planned(FIRST, 20.0)),
+        (60.0, belief(3, localized=True)),
+    ) == [(60.0, 20.0), (20.0, 10.0)]
