@@ -11,6 +11,7 @@ from backend.events import (
     BearingExcluded,
     BearingIncluded,
     BearingMeasured,
+    BeliefUpdated,
     MissionDrafted,
     MissionEdited,
     MissionEnded,
@@ -25,6 +26,7 @@ from backend.events import (
     SweepRejected,
 )
 from backend.mission.state import phase_of
+from backend.spec import MissionSpec
 from backend.store.library import LibraryEntry, advance
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -41,7 +43,9 @@ class MissionDigest:
     """The columns of the missions table.
 
     crafts: what each craft that is engaged does, by id; flying: there is one, perhaps on its way home after the end.
-    emitters: how many are looked for. bearings: of all emitters, those that count (taken and not excluded).
+    emitters: how many are looked for. bearings: of all emitters, those that count: taken, and neither they nor their
+    sources left out. counted: the same by emitter. spec_name: of the specification; a label stands before it
+    until another is written there. None of both: a mission from before they were kept.
     """
 
     mission_id: str
@@ -58,6 +62,8 @@ class MissionDigest:
     bearings: int
     rejected_sweeps: int
     last_seq: int
+    counted: Mapping[str, int] | None = field(default_factory=dict[str, int])
+    spec_name: str | None = None
     entry: LibraryEntry = field(default_factory=LibraryEntry)
 
     @property
@@ -118,11 +124,12 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             bearings=0,
             rejected_sweeps=0,
             last_seq=record.seq,
+            spec_name=_stored(event.spec.name),
         )
     digest = replace(digest, last_seq=record.seq)
     match event:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
-            return _in_phase(replace(digest, name=_stored(spec.name), emitters=len(spec.emitters)), passed=False)
+            return _in_phase(_specified(digest, spec), passed=False)
         case MissionLabelled(name=name):
             return replace(digest, name=_stored(name))
         case PreflightChecked(passed=passed):
@@ -132,18 +139,40 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             return _with_craft(replace(digest, started_at_us=first), craft_id, "ground", engaged=True)
         case PhaseChanged(craft_id=craft_id, after=after):
             return _with_craft(digest, craft_id, after, engaged=after != "ground")
-        case BearingMeasured():
-            return replace(digest, bearings=digest.bearings + 1)
-        case BearingExcluded(heard=True):
-            return replace(digest, bearings=digest.bearings - 1)
-        case BearingIncluded(heard=True):
-            return replace(digest, bearings=digest.bearings + 1)
+        case BearingMeasured(emitter_id=emitter_id) | BearingIncluded(emitter_id=emitter_id, heard=True):
+            return _one_more(digest, emitter_id, 1)
+        case BearingExcluded(emitter_id=emitter_id, heard=True):
+            return _one_more(digest, emitter_id, -1)
+        case BeliefUpdated(emitter_id=emitter_id, bearings=bearings) if digest.counted is not None:
+            return _counting(digest, {**digest.counted, emitter_id: bearings})  # without those of muted sources
         case SweepRejected():
             return replace(digest, rejected_sweeps=digest.rejected_sweeps + 1)
         case MissionEnded(outcome=outcome, mission_time_s=mission_time_s):
             return _in_phase(replace(digest, outcome=outcome, ended_at_us=at_us, mission_time_s=mission_time_s))
         case _:
             return digest
+
+
+def _one_more(digest: MissionDigest, emitter_id: str, more: int) -> MissionDigest:
+    """Or one fewer."""
+    if digest.counted is None:
+        return replace(digest, bearings=max(0, digest.bearings + more))
+    return _counting(digest, {**digest.counted, emitter_id: max(0, digest.counted.get(emitter_id, 0) + more)})
+
+
+def _counting(digest: MissionDigest, counted: Mapping[str, int]) -> MissionDigest:
+    return replace(digest, counted=counted, bearings=sum(counted.values()))
+
+
+def _specified(digest: MissionDigest, spec: MissionSpec) -> MissionDigest:
+    """An emitter that is no longer looked for takes its bearings with it."""
+    name = _stored(spec.name)
+    called = digest.name if name == digest.spec_name else name
+    digest = replace(digest, name=called, spec_name=name, emitters=len(spec.emitters))
+    if digest.counted is None:
+        return digest
+    sought = {emitter.emitter_id for emitter in spec.emitters}
+    return _counting(digest, {name: number for name, number in digest.counted.items() if name in sought})
 
 
 def _with_craft(digest: MissionDigest, craft_id: str, phase: Phase, engaged: bool) -> MissionDigest:
