@@ -29,7 +29,7 @@ from backend.mission.review import variants_of
 from backend.reasons import Reason
 from backend.search.covering import covers
 from backend.search.errors import MissionConflict, MissionInputError
-from backend.spec import Place
+from backend.spec import EmitterSpec, Place
 from backend.wire.courses import Course, CoursePoint, MissionCourses
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
@@ -44,13 +44,13 @@ Wanted = tuple[Supposition, "AnotherAntenna | None", "Reason | None"]
 
 @router.get("/courses")
 async def get_courses(mission_id: MissionId, services: ServicesDep, emitter: EmitterId = None) -> MissionCourses:
-    """The course of a mission about an emitter (None: the first) and those of its variants, each computed from the
-    stored facts."""
+    """The course of a mission about an emitter (None: the first) and those of its variants about the same, each
+    computed from the stored facts."""
     digest = await stored_mission(services, mission_id)
     recorded = await services.journal.read_kinds(mission_id, KINDS)
     wanted: dict[str, Wanted] = {}
     for name, kept in variants_of(recorded).items():
-        asked = kept if emitter is None else kept.model_copy(update={"emitter_id": emitter})
+        asked = kept.model_copy(update={"emitter_id": emitter})
         try:
             wanted[name] = asked, await another_antenna(services, mission_id, recorded, asked), None
         except MissionInputError as error:
@@ -59,11 +59,12 @@ async def get_courses(mission_id: MissionId, services: ServicesDep, emitter: Emi
         found = await apart(services, (1 + len(wanted)) * len(recorded), courses, recorded, wanted, emitter)
     if found is None:
         raise not_found("belief_about", str(emitter))
-    about, ended_s, bearings_s, each = found
+    emitters, about, ended_s, bearings_s, each = found
     return MissionCourses(
         mission_id=mission_id,
         name=digest.name,
         emitter_id=about,
+        emitters=emitters,
         ended_s=ended_s,
         bearings_s=bearings_s,
         courses=each,
@@ -88,9 +89,9 @@ async def drop_variant(mission_id: MissionId, name: Name, services: ServicesDep,
 
 def courses(
     recorded: Sequence[Recorded], wanted: Mapping[str, Wanted], emitter_id: str | None
-) -> tuple[str, float | None, list[float], list[Course]] | None:
-    """Emitter, end and bearings (s since the start), and the courses: the flown one first. None: no such emitter, or
-    nothing is known of it. Heavy: call it off the event loop."""
+) -> tuple[list[EmitterSpec], str, float | None, list[float], list[Course]] | None:
+    """The mission's emitters, the one it is about, end and bearings (s since the start), and the courses: the flown one
+    first. None: no such emitter, or nothing is known of it. Heavy: call it off the event loop."""
     flown = suppose(recorded, Supposition(emitter_id=emitter_id), None, None)
     if flown is None:
         return None
@@ -119,7 +120,7 @@ def courses(
         found.append(Course(name=name, wanted=asked, points=points, problem=problem))
     ended = [r.at_utc.timestamp() - began_s for r in recorded if isinstance(r.event, MissionEnded)]
     counted_s = [at_s[fact.bearing_id] for fact in flown.counted]
-    return about, ended[-1] if ended else None, counted_s, found
+    return flown.task.mission.emitters, about, ended[-1] if ended else None, counted_s, found
 
 
 def _began_s(recorded: Sequence[Recorded]) -> float:

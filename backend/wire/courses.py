@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from backend.events.review import Supposition
 from backend.reasons import Reason
-from backend.spec import Model
+from backend.spec import EmitterSpec, Model
 
 
 class CoursePoint(Model):
@@ -30,12 +30,14 @@ class Course(Model):
 
 
 class MissionCourses(Model):
-    """Of one emitter. ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing
-    that counts was taken."""
+    """Of one emitter, the variants too, whatever emitter they were kept for. emitters: all that are looked for.
+    ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing that counts was
+    taken."""
 
     mission_id: str
     name: str
     emitter_id: str
+    emitters: list[EmitterSpec]
     ended_s: float | None
     bearings_s: list[float]
     courses: list[Course]

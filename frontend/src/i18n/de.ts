@@ -1149,6 +1149,8 @@ export const de: Record<MessageKey, string> = {
   "compare.title": "Missionen im Vergleich",
   "compare.add": "Mission dazunehmen",
   "compare.choose": "Wählen …",
+  "compare.emitter": "Sender",
+  "compare.emitterOf": "Sender von {mission}",
   "compare.flown": "Wie geflogen",
   "compare.error": "Erwarteter Fehler über der Zeit",
   "compare.minutes": "Minuten seit dem Start",

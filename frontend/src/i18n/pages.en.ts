@@ -494,6 +494,8 @@ export const pagesEn = {
   "compare.title": "Missions compared",
   "compare.add": "Add a mission",
   "compare.choose": "Choose …",
+  "compare.emitter": "Emitter",
+  "compare.emitterOf": "Emitter of {mission}",
   "compare.flown": "As it was flown",
   "compare.error": "Expected error over time",
   "compare.minutes": "Minutes since the start",

@@ -6,6 +6,7 @@ import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { courses, dropVariant, type MissionCourses } from "../sources/coursesApi";
 import { errorTicks, type Line, lastSecond, linesOf, minuteStep, stepPath } from "../state/courses";
+import { emitterName } from "../state/emitterName";
 import { missionAddress, type Route } from "../state/route";
 import { settings } from "../state/settings";
 import { formatArea, formatDuration, formatLength } from "../units/quantities";
@@ -18,7 +19,27 @@ const COLOURS = 6;
 const DASHES = ["", "10 5", "3 5", "12 4 3 4"];
 const lineClass = (index: number) => `compare-line compare-line-${index % COLOURS}`;
 
-const called = (line: Line, alone: boolean) => line.variant ?? (alone ? t("compare.flown") : line.mission);
+function called(line: Line, alone: boolean): string {
+  const name = line.variant ?? (alone ? t("compare.flown") : line.mission);
+  return line.emitter === null ? name : `${name} · ${line.emitter}`;
+}
+
+/** Which emitter of a mission the courses are about; of one with a single emitter there is nothing to choose. */
+function EmitterChoice({ one, alone, onChoose }: { one: MissionCourses; alone: boolean; onChoose: (emitter: string) => void }) {
+  if (one.emitters.length < 2) return null;
+  return (
+    <label class="field-inline">
+      {alone ? t("compare.emitter") : t("compare.emitterOf", { mission: one.name })}
+      <select data-testid="compare-emitter" value={one.emitter_id} onChange={(e) => onChoose(e.currentTarget.value)}>
+        {one.emitters.map(({ emitter_id: id }) => (
+          <option value={id} key={id}>
+            {emitterName(one.emitters, id)}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
 
 function Axes({ missions, lines }: { missions: readonly MissionCourses[]; lines: readonly Line[] }) {
   const { units } = settings.value;
@@ -138,18 +159,19 @@ export function ComparePage({ route }: { route: Extract<Route, { page: "compare"
   const [found, setFound] = useState<readonly MissionCourses[] | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const [again, setAgain] = useState(0);
+  const [chosen, setChosen] = useState<Readonly<Record<string, string>>>({});
   const ids = route.missionIds.join("/");
   useEffect(() => {
     let current = true;
     setProblem(null);
-    Promise.all(route.missionIds.map(courses)).then(
+    Promise.all(route.missionIds.map((id) => courses(id, chosen[id]))).then(
       (all) => current && setFound(all),
       (error: unknown) => current && setProblem(asProblem(error)),
     );
     return () => {
       current = false;
     };
-  }, [ids, again]);
+  }, [ids, again, chosen]);
   const lines = linesOf(found ?? []);
   const alone = route.missionIds.length === 1;
   const forget = (line: Line) =>
@@ -165,6 +187,14 @@ export function ComparePage({ route }: { route: Extract<Route, { page: "compare"
       </div>
       {problem && <ProblemBox problem={problem} />}
       {!found && !problem && <p class="muted">{t("missions.loading")}</p>}
+      {found?.map((one) => (
+        <EmitterChoice
+          one={one}
+          alone={alone}
+          onChoose={(emitter) => setChosen({ ...chosen, [one.mission_id]: emitter })}
+          key={one.mission_id}
+        />
+      ))}
       {found && (
         <>
           {lines.some((l) => l.points.length > 0) ? <Axes missions={found} lines={lines} /> : <p class="card">{t("compare.nothing")}</p>}

@@ -35,7 +35,7 @@ it("compares missions without a failure that is over", async () => {
   vi.spyOn(api, "missions").mockReturnValue(new Promise(() => undefined));
   vi.spyOn(coursesApi, "courses")
     .mockRejectedValueOnce(new Error("no server"))
-    .mockResolvedValueOnce({ mission_id: "m", name: "hare", ended_s: 1, courses: [] } as never);
+    .mockResolvedValueOnce({ mission_id: "m", name: "hare", ended_s: 1, emitters: [], bearings_s: [], courses: [] } as never);
   await open(<ComparePage route={{ page: "compare", missionIds: ["nope"] }} />);
   expect(problems()).toBe(1);
   await open(<ComparePage route={{ page: "compare", missionIds: ["m"] }} />);

@@ -10,6 +10,10 @@ export type Supposition = Schemas["Supposition"];
 
 const variant = (id: string, name: string) => `/missions/${encodeURIComponent(id)}/variants/${encodeURIComponent(name)}`;
 
-export const courses = (id: string) => json<MissionCourses>(`/missions/${encodeURIComponent(id)}/courses`);
+/** emitter: by id; none: the first. */
+export const courses = (id: string, emitter?: string) =>
+  json<MissionCourses>(
+    `/missions/${encodeURIComponent(id)}/courses${emitter === undefined ? "" : `?emitter=${encodeURIComponent(emitter)}`}`,
+  );
 export const keepVariant = (id: string, name: string, wanted: Supposition) => requestEmpty(variant(id, name), withBody("PUT", wanted));
 export const dropVariant = (id: string, name: string) => requestEmpty(variant(id, name), { method: "DELETE" });

@@ -18,6 +18,7 @@ const missions: MissionCourses[] = [
     mission_id: "a",
     name: "A",
     emitter_id: "emitter-1",
+    emitters: [],
     ended_s: 300,
     bearings_s: [60, 120],
     courses: [
@@ -25,7 +26,7 @@ const missions: MissionCourses[] = [
       { name: "blunt", wanted: null, points: [point(60, 90)], problem: null },
     ],
   },
-  { mission_id: "b", name: "B", emitter_id: "emitter-1", ended_s: null, bearings_s: [400], courses: [] },
+  { mission_id: "b", name: "B", emitter_id: "emitter-1", emitters: [], ended_s: null, bearings_s: [400], courses: [] },
 ];
 
 it("puts every course on one axis, each under its own name", () => {

@@ -1,5 +1,6 @@
 // Courses of missions and their variants on one axis: time since the start against the expected error.
 import type { CoursePoint, MissionCourses } from "../sources/coursesApi";
+import { emitterName } from "./emitterName";
 
 export interface Line {
   key: string;
@@ -7,6 +8,8 @@ export interface Line {
   mission: string;
   /** null: as it was flown. */
   variant: string | null;
+  /** That it is about; null where the mission has one only. */
+  emitter: string | null;
   points: readonly CoursePoint[];
 }
 
@@ -17,6 +20,7 @@ export const linesOf = (missions: readonly MissionCourses[]): Line[] =>
       missionId: one.mission_id,
       mission: one.name,
       variant: name,
+      emitter: one.emitters.length > 1 ? emitterName(one.emitters, one.emitter_id) : null,
       points,
     })),
   );

@@ -1022,8 +1022,8 @@ export interface paths {
         };
         /**
          * Get Courses
-         * @description The course of a mission about an emitter (None: the first) and those of its variants, each computed from the
-         *     stored facts.
+         * @description The course of a mission about an emitter (None: the first) and those of its variants about the same, each
+         *     computed from the stored facts.
          */
         get: operations["get_courses"];
         put?: never;
@@ -4959,13 +4959,15 @@ export interface components {
             by: string;
         };
         /**
-         * @description Of one emitter. ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing
-         *     that counts was taken.
+         * @description Of one emitter, the variants too, whatever emitter they were kept for. emitters: all that are looked for.
+         *     ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing that counts was
+         *     taken.
          */
         MissionCourses: {
             mission_id: string;
             name: string;
             emitter_id: string;
+            emitters: components["schemas"]["EmitterSpec"][];
             ended_s: number | null;
             bearings_s: number[];
             courses: components["schemas"]["Course"][];
