@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+NO_CHARACTERS = range(0xFDD0, 0xFDF0)
+"""Nor are the last two code points of every plane (Unicode 23.7); XML cannot hold U+FFFE and U+FFFF."""
 TURNS_WRITING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 
 
 def in_one_line(text: str) -> str:
-    """Raises ValueError for control characters, and for those that turn the direction of writing."""
-    if any(ord(letter) < 0x20 or letter in TURNS_WRITING for letter in text):
+    """Raises ValueError for control characters, those that turn the direction of writing, and what is no character."""
+    if any(ord(letter) < 0x20 or letter in TURNS_WRITING or _is_none(ord(letter)) for letter in text):
         raise ValueError("write it in one line, without control characters")
     return text
+
+
+def _is_none(code: int) -> bool:
+    return code & 0xFFFE == 0xFFFE or code in NO_CHARACTERS
 
 
 def seen(text: str) -> str:

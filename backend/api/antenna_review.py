@@ -65,10 +65,8 @@ def _counted(recorded: Sequence[Recorded], emitter_id: str) -> list[BearingMeasu
 
 def _kept(fact: BearingMeasured) -> KeptSweep:
     binned = np.array([math.nan if value is None else value for value in fact.binned_db])
-    noise = None
-    if fact.snr_db is not None:
-        fitted = np.array([math.nan if value is None else value for value in fact.fitted_db])
-        noise = float(np.nanmax(fitted)) - fact.snr_db
+    fitted = [value for value in fact.fitted_db if value is not None]
+    noise = max(fitted) - fact.snr_db if fitted and fact.snr_db is not None else None
     return KeptSweep(fact.place, fact.bearing_deg, binned, noise)
 
 

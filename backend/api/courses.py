@@ -7,6 +7,7 @@ from typing import Annotated
 
 import pymap3d.vincenty
 from fastapi import APIRouter, Path
+from pydantic import AfterValidator
 
 from backend.api.another_antenna import AnotherAntenna, another_antenna
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
@@ -26,6 +27,7 @@ from backend.events import (
 )
 from backend.events.review import VariantName
 from backend.mission.review import variants_of
+from backend.names import seen
 from backend.reasons import Reason
 from backend.search.covering import covers
 from backend.search.errors import MissionConflict, MissionInputError
@@ -38,6 +40,8 @@ KINDS = (*SUPPOSED_KINDS, "mission_ended", "truth_noted", "variant_kept", "varia
 """The events that the answer depends on."""
 
 Name = Annotated[VariantName, Path(max_length=60)]
+SeenName = Annotated[Name, AfterValidator(seen)]
+"""One that was kept before is dropped, whatever is in it."""
 
 Wanted = tuple[Supposition, "AnotherAntenna | None", "Reason | None"]
 
@@ -73,7 +77,7 @@ async def get_courses(mission_id: MissionId, services: ServicesDep, emitter: Emi
 
 @router.put("/variants/{name}", status_code=204)
 async def keep_variant(
-    mission_id: MissionId, name: Name, wanted: Supposition, services: ServicesDep, principal: PrincipalDep
+    mission_id: MissionId, name: SeenName, wanted: Supposition, services: ServicesDep, principal: PrincipalDep
 ) -> None:
     """Keep a supposition by name beside the mission, which stays as it was flown."""
     await stored_mission(services, mission_id)

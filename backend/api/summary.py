@@ -56,7 +56,7 @@ def _summary(digest: MissionDigest, iq_bytes: int) -> dict[str, object]:
         "bearings": digest.bearings,
         "rejected_sweeps": digest.rejected_sweeps,
         "last_seq": digest.last_seq,
-        "tags": digest.entry.tags.splitlines(),
+        "tags": [tag for tag in digest.entry.tags.split("\n") if tag],
         "notes": digest.entry.notes,
         "deleted_at_utc": deleted,
         "gone_at_utc": None if deleted is None else deleted + timedelta(days=DELETED_DAYS),

@@ -99,7 +99,7 @@ def _somewhere(entry: LibraryEntry, area: Area) -> LibraryEntry:
 
 
 def _sought(spec: MissionSpec) -> str:
-    words = [word for one in spec.emitters for word in (one.emitter_id, one.label, f"{one.frequency_hz / 1e6:g}")]
+    words = [word for one in spec.emitters for word in (one.emitter_id, one.label, f"{one.frequency_hz / 1e6:.10g}")]
     return " ".join(words).lower().replace("\x00", "")
 
 

@@ -18,7 +18,7 @@ from hardware.direction_finding.comparison import beam
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import parse_pattern
 from hardware.readings import Place
-from tests.backend.api.test_what_if import HOME, SPEC
+from tests.backend.api.test_what_if import HOME, SPEC, bearing
 from tests.benchmarks.pattern_mismatch import Mismatch, deformed, sweep_of
 
 NOMINAL = beam(60.0)
@@ -111,3 +111,14 @@ async def test_a_mission_without_sweeps_has_nothing_to_say(client, services):
     await services.journal.append("m1", [MissionDrafted(spec=SPEC)])
     told = (await client.get("/api/missions/m1/antenna")).json()
     assert told == {"sweeps": 0, "repeats_db": None, "doubt": None, "proposed": None}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("fitted_db", [[], [None] * 180])
+async def test_a_bearing_that_nothing_was_fitted_to_is_no_fault(client, services, fitted_db):
+    odd = bearing(1, -100.0, 0.0).model_copy(update={"fitted_db": fitted_db, "snr_db": 12.0})
+    started = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
+    started = started.model_copy(update={"antenna": antenna_fact(NOMINAL)})
+    await services.journal.append("odd", [MissionDrafted(spec=SPEC), started, odd])
+    reply = await client.get("/api/missions/odd/antenna")
+    assert reply.status_code == 200, reply.text

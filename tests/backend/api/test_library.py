@@ -102,6 +102,9 @@ async def test_labels_are_kept_and_searched_and_the_list_has_a_small_map(client)
     assert (listed["tags"], listed["notes"]) == (labels["tags"], labels["notes"])
     assert listed["sketch"]["outline"] == [AREA["coordinates"][0]]
     for wrong in (
+        {**labels, "name": "owls\uffff"},
+        {**labels, "name": "owls\ufdd0"},
+        {**labels, "name": "owls\U0010fffe"},
         {**labels, "name": " "},
         {**labels, "name": "\u200b"},
         {**labels, "name": "owls\u202egpj"},
@@ -114,10 +117,28 @@ async def test_labels_are_kept_and_searched_and_the_list_has_a_small_map(client)
         assert (await client.put(f"/api/missions/{mission_id}/labels", json=wrong)).status_code == 422
 
 
+async def test_a_tag_is_one_whatever_ends_a_line_elsewhere(client):
+    mission_id = await draft(client)
+    tags = ["night\u2028owl", "night\u2029owl", "night\x85owl"]
+    told = await client.put(f"/api/missions/{mission_id}/labels", json={"name": "Owls", "tags": tags, "notes": ""})
+    assert (told.status_code, told.json()["tags"]) == (200, tags)
+    await client.put(f"/api/missions/{mission_id}/labels", json={"name": "Owls", "tags": [], "notes": ""})
+    assert (await client.get("/api/missions")).json()["missions"][0]["tags"] == []
+
+
+async def test_an_emitter_is_found_by_every_digit_of_its_frequency(client):
+    exact = {"868.3125": 868.3125e6, "148.52345": 148_523_450.0, "1575.42015": 1_575_420_150.0, "0.457": 457_000.0}
+    for megahertz, frequency_hz in exact.items():
+        await draft(client, name=megahertz, emitters=[{"frequency_hz": frequency_hz}])
+    assert [await names(client, emitter=megahertz) for megahertz in exact] == [{megahertz} for megahertz in exact]
+    assert await names(client, emitter="148.523") == {"148.52345"}
+
+
 @pytest.mark.parametrize(
     ("changes", "field"),
     [
         ({"name": "owls\u202egpj"}, "name"),
+        ({"name": "owls\ufffe"}, "name"),
         ({"name": "o\nwls"}, "name"),
         ({"name": "\u200b"}, "name"),
         ({"emitters": [{"label": "vixen\u202egpj"}]}, "emitters.0.label"),

@@ -23,6 +23,7 @@ from backend.events import (
     SweepRejected,
     TruthNoted,
 )
+from backend.events.review import Supposition, VariantKept
 from backend.search.antenna import antenna_fact
 from backend.search.localization import localization
 from backend.spec import EmitterSpec, MissionSpec, Polygon
@@ -376,8 +377,16 @@ async def test_no_more_variants_than_can_be_compared(client, flown):
     answers = [await keep(client, flown, f"v{number}") for number in range(13)]
     assert answers == [204] * 12 + [409]
     assert await keep(client, flown, "v0", sigma_deg=9.0) == 204, "one that is there may change"
-    for wrong in ("%20", "x" * 61, "a%0Ab"):
+    for wrong in ("%20", "x" * 61, "a%0Ab", "%E2%80%AEgpj", "%E2%80%8B", "v%EF%BF%BF"):
         assert await keep(client, flown, wrong) == 422, wrong
+
+
+async def test_a_variant_with_a_name_of_before_is_still_told_and_dropped(client, flown, services):
+    kept = VariantKept(name="\u202egpj", wanted=Supposition(), by="a")
+    await services.journal.append(flown, [kept])
+    assert "\u202egpj" in await courses(client, flown)
+    assert (await client.delete(f"/api/missions/{flown}/variants/%E2%80%AEgpj")).status_code == 204
+    assert list(await courses(client, flown)) == [None]
 
 
 async def test_a_variant_kept_for_one_emitter_is_told_of_the_one_asked_about(client, services):
