@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from pebble import ProcessExpired, ProcessPool
+from shapely import GEOSException
 
 from backend.reasons.work import FileTooHeavy, ReadersBusy
 from planner.reason import ReasonedError
@@ -29,6 +30,8 @@ T = TypeVar("T")
 
 TIME_S = 20.0
 MEMORY_BYTES = 170 * 2**20
+MISSION_BYTES = 320 * 2**20
+"""Of the file of a whole mission, parsed; the largest that is read takes 300 MB."""
 MOST_WAITING = 8
 NICER_BY = 10
 """The flight's own process goes first on a busy machine."""
@@ -63,22 +66,26 @@ class Workers:
 
         Raises WorkStopped, WorkersBusy, and what `work` raises. A caller that is cancelled ends the work.
         """
+        return await self.run_within(self.memory_bytes, work, *args, **kwargs)
+
+    async def run_within(self, memory_bytes: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """As run, with another limit of memory."""
         if self._waiting >= MOST_WAITING:
             raise WorkersBusy(ReadersBusy(self._waiting))
         pool = self._opened()
         self._waiting += 1
         try:
-            bounded = (self.memory_bytes, work, *args)
+            bounded = (memory_bytes, work, *args)
             return await asyncio.wrap_future(pool.schedule(_bounded, bounded, kwargs, timeout=self.time_s))
         except TimeoutError as error:
-            raise WorkStopped(FileTooHeavy("time", self.time_s, self.memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("time", self.time_s, memory_bytes)) from error
         except MemoryError as error:
-            raise WorkStopped(FileTooHeavy("memory", self.time_s, self.memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("memory", self.time_s, memory_bytes)) from error
         except RecursionError as error:
-            raise WorkStopped(FileTooHeavy("depth", self.time_s, self.memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("depth", self.time_s, memory_bytes)) from error
         except ProcessExpired as error:
             log.warning("the process that reads files ended: %s", error)
-            raise WorkStopped(FileTooHeavy("process", self.time_s, self.memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("process", self.time_s, memory_bytes)) from error
         finally:
             self._waiting -= 1
 
@@ -105,6 +112,9 @@ def _bounded(memory_bytes: int, work: Callable[..., T], *args: Any, **kwargs: An
         return work(*args, **kwargs)
     except MemoryError:
         pass  # with it go the frames that hold what was read
+    except GEOSException as error:
+        if "bad_alloc" not in str(error):
+            raise
     finally:
         _give_back()
         _allow(None)  # the answer is yet to be packed

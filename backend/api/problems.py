@@ -183,7 +183,9 @@ async def on_fault(request: Request, error: Exception) -> JSONResponse:
     """A fault of our own: the operator gets an id to quote, the log gets the traceback."""
     incident = uuid4().hex[:12]
     log.error("incident %s: %s %s", incident, request.method, request.url.path, exc_info=error)
-    return respond(problem(500, reasons.ServerBroke(incident)))
+    return respond(
+        problem(500, reasons.ServerBroke(incident)), {"connection": "close"}
+    )  # after it the server closes it
 
 
 def install(app: FastAPI) -> None:

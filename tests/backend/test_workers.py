@@ -10,6 +10,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from shapely import GEOSException
 
 from backend.maps.refusal import MapRefused
 from backend.reasons.maps import NothingToDraw
@@ -37,6 +38,14 @@ def _keep(count: int) -> int:
 
 def _nest(depth: int) -> int:
     return 1 if depth == 0 else 1 + _nest(depth - 1)
+
+
+def _overrun_geometry() -> None:
+    raise GEOSException("std::bad_alloc")
+
+
+def _break_geometry() -> None:
+    raise GEOSException("TopologyException: side location conflict")
 
 
 def _die() -> None:
@@ -72,6 +81,20 @@ async def test_a_file_that_takes_too_much_is_stopped_and_the_next_is_read(
         await strict.run(work, *([] if argument is None else [argument]))
     assert stopped.value.reason == FileTooHeavy(limit, strict.time_s, 200 * 2**20)
     assert await strict.run(_fill, 1000) == 1000
+
+
+async def test_geometry_that_takes_too_much_memory_is_too_heavy(strict: Workers) -> None:
+    with pytest.raises(WorkStopped) as stopped:
+        await strict.run(_overrun_geometry)
+    assert stopped.value.reason == FileTooHeavy("memory", strict.time_s, strict.memory_bytes)
+    with pytest.raises(GEOSException, match="side location"):
+        await strict.run(_break_geometry)
+
+
+async def test_another_limit_of_memory_is_for_one_file(strict: Workers) -> None:
+    assert await strict.run_within(600 * 2**20, _fill, 300 * 2**20) == 300 * 2**20
+    with pytest.raises(WorkStopped):
+        await strict.run(_fill, 300 * 2**20)
 
 
 async def test_a_file_that_takes_too_much_leaves_the_next_its_memory(strict: Workers) -> None:

@@ -6,8 +6,9 @@ import json
 from typing import Any
 
 import pytest
+from starlette.requests import Request
 
-from backend.api.problems import MEDIA_TYPE, STATUSES
+from backend.api.problems import MEDIA_TYPE, STATUSES, on_fault
 from backend.settings import REPOSITORY
 from backend.wire.problem import TITLES, Problem
 
@@ -52,6 +53,12 @@ async def test_every_refusal_carries_a_reason(client, method, path, operation):
         assert problem.status == reply.status_code
         assert problem.detail
         assert Problem.model_validate(problem.model_dump(mode="json")) == problem
+
+
+async def test_a_fault_of_the_server_says_that_it_closes_the_connection(caplog):
+    request = Request({"type": "http", "method": "GET", "path": "/api/calibration", "headers": []})
+    answer = await on_fault(request, ValueError("broken"))
+    assert (answer.status_code, answer.headers["connection"]) == (500, "close")
 
 
 def test_every_status_that_is_answered_has_a_title():
