@@ -27,12 +27,13 @@ AREA_BYTES = 8 * 2**20
 """With the text of a KML or GeoJSON file inside."""
 RECORDING_BYTES = 128 * 2**20
 """A minute of IQ at the usual rates."""
-EXPORT_BYTES = 16 * 2**20
-"""Events and flown path of a day in the air."""
+EXPORT_BYTES = 48 * 2**20
+"""Of a mission with 32 emitters and a hundred turns, unpacked; the worker that reads it takes six times as much."""
 
 ENTRANCES = ("/api/session", "/api/first-admin", "/api/recovery", "/api/invitation/")
 UPLOADS = ("/api/maps", "/api/overlays", "/api/terrain")
 """Their bodies are files, under limits of their own."""
+OF_MISSIONS = ("/api/recordings/read", "/api/bundles")
 READ_APART = ("/api/recordings/read",)
 """Its JSON is read in a process of its own, and may be as rich as a mission is."""
 
@@ -55,7 +56,7 @@ def most_bytes(path: str) -> int | None:
         return None
     if path.startswith(ENTRANCES):
         return ENTERING_BYTES
-    if path in ("/api/recordings/read", "/api/bundles"):
+    if path in OF_MISSIONS:
         return EXPORT_BYTES
     if path == "/api/areas":
         return AREA_BYTES
@@ -69,7 +70,11 @@ def too_large(scope: Scope) -> Problem | None:
     length, most = Headers(scope=scope).get("content-length", "0"), most_bytes(scope["path"])
     if most is None or not length.isdigit() or int(length) <= most:
         return None
-    return problem(413, reasons.BodyTooLarge(most))
+    return problem(413, _reason(scope, most))
+
+
+def _reason(scope: Scope, most: int) -> reasons.BodyTooLarge:
+    return reasons.BodyTooLarge(most, "mission" if scope["path"] in OF_MISSIONS else "other")
 
 
 async def let_pass(receive: Receive) -> None:
@@ -184,7 +189,7 @@ def _bounded(scope: Scope, receive: Receive) -> Receive:
         taken += len(message.get("body", b""))
         more = bool(message.get("more_body", False))
         if most is not None and taken > most:
-            raise ApiProblem(413, reasons.BodyTooLarge(most))
+            raise ApiProblem(413, _reason(scope, most))
         return message
 
     return bounded

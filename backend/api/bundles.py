@@ -13,6 +13,7 @@ from backend.reasons.request import BundleFileWrong, BundleUnreadable
 from backend.store.brought import WAYS, BundleRefused, read_bundle
 from backend.store.entries import JournalConflict
 from backend.wire.library import MissionBrought
+from backend.workers import MISSION_BYTES
 
 router = APIRouter(prefix="/api", tags=["library"], responses=PROBLEM_RESPONSES)
 
@@ -29,11 +30,11 @@ async def bring_in_bundle(
     request: Request, services: ServicesDep, principal: PrincipalDep, response: Response
 ) -> MissionBrought:
     """Bring in the bundle of another installation as a mission with the id it had there: the same events, sweeps and
-    paths, so the same review, and with its ways. The same bundle again changes nothing: 200. 409: the mission is here
-    with other facts."""
+    paths, so the same review, and with its ways. The same bundle again changes nothing: 200; but one that was deleted
+    here is in the list again. 409: the mission is here with other facts."""
     content = await request.body()
     try:
-        brought = await services.workers.run(read_bundle, content)
+        brought = await services.workers.run_within(MISSION_BYTES, read_bundle, content)
     except BundleRefused as refused:
         raise ApiProblem(422, refused.reason) from refused
     try:
@@ -51,6 +52,9 @@ async def bring_in_bundle(
         raise ApiProblem(409, BundleUnreadable("differs")) from conflict
     if not new:
         response.status_code = 200
+        here = await services.journal.mission(brought.mission_id)
+        if here is not None and here.entry.deleted_at_us is not None:
+            await services.missions.review.restore(brought.mission_id, principal.name)
     return MissionBrought(
         mission_id=brought.mission_id, already=not new, events=len(brought.rows), sweeps=len(brought.sweeps)
     )

@@ -9,12 +9,14 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 from pydantic import TypeAdapter, ValidationError
+from pydantic_core import PydanticSerializationError
 
 from backend.api.dependencies import ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.reasons.request import ExportUnreadable
 from backend.store.exported import ExportedLater, NotExported, export_of_today
 from backend.wire.resources import ExportedMission, Track, TrackFact
+from backend.workers import MISSION_BYTES
 from planner.reason import ReasonedError
 
 router = APIRouter(prefix="/api/recordings", tags=["review"], responses=PROBLEM_RESPONSES)
@@ -52,7 +54,7 @@ async def read_exported_mission(request: Request, services: ServicesDep) -> Resp
         if len(text) <= SHORT_BYTES:
             answer = await asyncio.to_thread(read_export, text)
         else:
-            answer = await services.workers.run(read_export, text)
+            answer = await services.workers.run_within(MISSION_BYTES, read_export, text)
     except ExportRefused as refused:
         raise ApiProblem(422, refused.reason) from refused
     return Response(answer, media_type="application/json")
@@ -68,6 +70,7 @@ def read_export(text: bytes) -> str:
         raise ExportRefused(ExportUnreadable("not_json")) from error
     try:
         exported = export_of_today(parsed)
+        del parsed  # of a large mission it is ten times its text
         mission = ExportedMission(
             mission_id=exported["mission_id"],
             events=exported["events"],
@@ -75,11 +78,11 @@ def read_export(text: bytes) -> str:
                 _track(exported["mission_id"], *path) for path in TRACKS.validate_python(exported["tracks"]).items()
             ],
         )
+        return mission.model_dump_json()
     except ExportedLater as error:
         raise ExportRefused(ExportUnreadable("later")) from error
-    except (NotExported, ValidationError, RecursionError) as error:
-        raise ExportRefused(ExportUnreadable("not_exported")) from error
-    return mission.model_dump_json()
+    except (NotExported, ValidationError, PydanticSerializationError, RecursionError) as error:
+        raise ExportRefused(ExportUnreadable("not_exported")) from error  # half a surrogate pair is no text to write
 
 
 def _track(mission_id: Any, craft_id: str, rows: list[Row]) -> Track:

@@ -126,7 +126,7 @@ class OverlayFolder:
 
 def _look(first_bytes: bytes, size: int) -> None:
     if size > MOST_OVERLAY_BYTES:
-        raise MapRefused(BodyTooLarge(MOST_OVERLAY_BYTES))
+        raise MapRefused(BodyTooLarge(MOST_OVERLAY_BYTES, "other"))
 
 
 def _description(path: Path) -> Overlay:

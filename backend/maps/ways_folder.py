@@ -87,4 +87,4 @@ def _traced(path: Path, _changed_ns: int) -> tuple[Traced, ...]:
 
 def _look(first_bytes: bytes, size: int) -> None:
     if size > MOST_OVERLAY_BYTES:
-        raise MapRefused(BodyTooLarge(MOST_OVERLAY_BYTES))
+        raise MapRefused(BodyTooLarge(MOST_OVERLAY_BYTES, "other"))

@@ -131,10 +131,15 @@ class HttpRefused:
 
 @dataclass(frozen=True, slots=True)
 class BodyTooLarge:
+    """what: was sent: the file of a mission, or anything else."""
+
     most_bytes: int
+    what: Literal["mission", "other"]
     code: Literal["body_too_large"] = "body_too_large"
     english: ClassVar[Words] = Words(
-        "A request may have at most {most_bytes}.", "Simplify the geometry, or split the file."
+        "{what?mission=The file of a mission|other=A request} may have at most {most_bytes}.",
+        "{what?mission=Choose the zip file that “All of it” saves under “Take away”: it is packed. If this is it, "
+        "the mission is longer than any that can be read.|other=Simplify the geometry, or split the file.}",
     )
 
 

@@ -17,7 +17,7 @@ from datetime import UTC, datetime
 from typing import Any, Literal, cast
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 from sqlalchemy import exc
 from sqlalchemy.ext.asyncio import AsyncEngine
 
@@ -28,7 +28,7 @@ from backend.reasons.request import BundleFactWrong, BundleFileWrong, BundleUnre
 from backend.store.brought_facts import is_id, of_emitters_looked_for, on_earth, unfit
 from backend.store.digest import MissionDigest, fold, to_columns
 from backend.store.entries import EventRow, SweepEntry, TrackEntry, decode, to_records, to_row
-from backend.store.exported import RECORDED, ExportedLater, NotExported, export_of_today
+from backend.store.exported import ExportedLater, NotExported, export_of_today
 from backend.store.patience import patience
 from backend.store.reading import unavailable
 from backend.store.tables import events, missions
@@ -205,11 +205,11 @@ def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
     exported = _parsed(text, JOURNAL)
     try:
         today = export_of_today(exported)
-        recorded = RECORDED.validate_python(today["events"])
     except ExportedLater as error:
         raise _refused("later") from error
-    except (NotExported, ValidationError, RecursionError) as error:
+    except (NotExported, RecursionError) as error:
         raise _wrong("not_exported", JOURNAL) from error
+    recorded: list[Recorded] = today["events"]
     mission_id = today["mission_id"]
     if len(recorded) > MOST_EVENTS:
         raise _refused("too_large")

@@ -21,8 +21,8 @@ class ExportedLater(NotExported):
 
 
 def export_of_today(exported: Any) -> Body:
-    """Events and tracks of what was parsed from the file. The first form named itself nowhere, and its only track had
-    no craft.
+    """Events (as Recorded) and tracks of what was parsed from the file. The first form named itself nowhere, and its
+    only track had no craft.
 
     Raises NotExported, ExportedLater.
     """
@@ -49,6 +49,6 @@ def _of_today(exported: Body) -> Body:
     return {
         "mission_id": exported["mission_id"],
         "form": FORM,
-        "events": RECORDED.dump_python(recorded, mode="json"),
+        "events": recorded,
         "tracks": tracks,
     }

@@ -882,7 +882,10 @@ export const reasonsEn: ReasonTable = {
     "IQ is kept of SigMF recordings that are imported; export everything for the power, sample by sample.",
   ],
   http_refused: ["The request was refused ({status}): {phrase}."],
-  body_too_large: ["A request may have at most {most_bytes}.", "Simplify the geometry, or split the file."],
+  body_too_large: [
+    "{what?mission=The file of a mission|other=A request} may have at most {most_bytes}.",
+    "{what?mission=Choose the zip file that “All of it” saves under “Take away”: it is packed. If this is it, the mission is longer than any that can be read.|other=Simplify the geometry, or split the file.}",
+  ],
   body_too_rich: ["A request may have at most {most_fields} named fields and {most_items} items in its lists.", "Simplify the geometry."],
   body_too_slow: ["Nothing of the request arrived for {wait_s}.", "Look at the network, then send it again."],
   unknown_host: [

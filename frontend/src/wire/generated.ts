@@ -1003,8 +1003,8 @@ export interface paths {
         /**
          * Bring In Bundle
          * @description Bring in the bundle of another installation as a mission with the id it had there: the same events, sweeps and
-         *     paths, so the same review, and with its ways. The same bundle again changes nothing: 200. 409: the mission is here
-         *     with other facts.
+         *     paths, so the same review, and with its ways. The same bundle again changes nothing: 200; but one that was deleted
+         *     here is in the list again. 409: the mission is here with other facts.
          */
         post: operations["bring_in_bundle"];
         delete?: never;
@@ -2427,8 +2427,11 @@ export interface components {
              */
             code: "beyond_web_maps";
         };
+        /** @description what: was sent: the file of a mission, or anything else. */
         BodyTooLarge: {
             most_bytes: number;
+            /** @enum {string} */
+            what: "mission" | "other";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

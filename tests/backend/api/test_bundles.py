@@ -111,6 +111,14 @@ async def test_a_mission_that_was_deleted_elsewhere_is_in_the_list_here(client, 
     ]  # fmt: skip
 
 
+async def test_a_mission_that_was_deleted_here_comes_back_with_its_bundle(client, flown):
+    content = await exported(client, flown)
+    assert (await client.delete(f"/api/missions/{flown}")).status_code == 204
+    again = await client.post("/api/bundles", content=content)
+    assert (again.status_code, again.json()["already"]) == (200, True)
+    assert [one["mission_id"] for one in (await client.get("/api/missions")).json()["missions"]] == [ID]
+
+
 async def test_a_bundle_of_a_bundle_is_the_same_mission(client, flown, elsewhere):
     """Brought in a second time, with the fact of the first in it."""
     there, _ = elsewhere

@@ -113,6 +113,41 @@ async def test_anything_else_is_refused(client, content, fault):
     assert reply.json()["reason"] == {"fault": fault, "code": "export_unreadable"}
 
 
+@pytest.mark.parametrize(
+    "half",
+    [{"mission_id": "a\ud800"}, {"tracks": {"a\ud800": []}}, {"tracks": {"a\ud800": TODAY["tracks"]["craft-1"]}}],
+)
+async def test_half_a_surrogate_pair_is_no_text_to_tell(client, half):
+    reply = await read(client, TODAY | half)
+    assert reply.status_code == 422, reply.text
+    assert reply.json()["reason"] == {"fault": "not_exported", "code": "export_unreadable"}
+
+
+@pytest.mark.parametrize("path", ["/api/recordings/read", "/api/bundles"])
+async def test_what_fits_a_mission_too_large_is_said_of_it(client, monkeypatch, path):
+    monkeypatch.setattr(bodies, "EXPORT_BYTES", 1_000)
+    for content_type in ("application/json", "application/zip"):
+        reply = await client.post(path, content=b" " * 2_000, headers={"content-type": content_type})
+        told = {"most_bytes": 1_000, "what": "mission", "code": "body_too_large"}
+        assert (reply.status_code, reply.json()["reason"]) == (413, told)
+        assert "geometry" not in reply.json()["remedy"]
+
+
+async def test_an_export_of_many_emitters_is_read(client):
+    """As large as what a flight for 32 emitters gives."""
+    bearing = next(one for one in TODAY["events"] if one["event"]["kind"] == "bearing_measured")
+    rich = bearing["event"] | {"binned_db": [-60.123456789012] * 180, "fitted_db": [-60.123456789012] * 180}
+    first = len(TODAY["events"]) + 1
+    more = [bearing | {"seq": first + n, "event": rich | {"bearing_id": f"b{n}"}} for n in range(2_600)]
+    content = json.dumps(TODAY | {"events": TODAY["events"] + more}).encode()
+    assert 16 * 2**20 < len(content) < bodies.EXPORT_BYTES
+    reply = await read(client, content)
+    assert reply.status_code == 200, reply.text[:300]
+    assert reply.content.count(b'"bearing_measured"') == 2_600 + sum(
+        one["event"]["kind"] == "bearing_measured" for one in TODAY["events"]
+    )
+
+
 async def test_a_mission_longer_than_any_is_refused_before_it_is_read(client, monkeypatch):
     monkeypatch.setattr(bodies, "EXPORT_BYTES", 1_000)
     reply = await read(client, TODAY)

@@ -23,7 +23,10 @@ export const server = {
     "Behalten wird das IQ von SigMF-Aufnahmen, die importiert werden; für die Leistung, Messwert für Messwert, alles exportieren.",
   ],
   http_refused: ["Die Anfrage wurde abgelehnt ({status}): {phrase}."],
-  body_too_large: ["Eine Anfrage darf höchstens {most_bytes} haben.", "Die Geometrie vereinfachen oder die Datei teilen."],
+  body_too_large: [
+    "{what?mission=Die Datei einer Mission|other=Eine Anfrage} darf höchstens {most_bytes} haben.",
+    "{what?mission=Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert: Sie ist gepackt. Ist es diese, dann ist die Mission länger als jede, die gelesen werden kann.|other=Die Geometrie vereinfachen oder die Datei teilen.}",
+  ],
   stock_full: [
     "Dafür ist kein Platz: Höchstens {most} {what?overlays=Überlagerungen|recordings=rohe Drehungen aus Aufnahmen} und {most_bytes} davon werden behalten.",
     "{what?overlays=Überlagerungen löschen, die nicht gebraucht werden, oder CROSSFIX_OVERLAYS_MAX und CROSSFIX_OVERLAYS_MAX_BYTES erhöhen|recordings=Rohe Drehungen alter Missionen löschen lassen (crossfix thin) oder CROSSFIX_RECORDINGS_MAX_SWEEPS und CROSSFIX_RECORDINGS_MAX_BYTES erhöhen}.",
