@@ -30,8 +30,6 @@ T = TypeVar("T")
 
 TIME_S = 20.0
 MEMORY_BYTES = 170 * 2**20
-MISSION_BYTES = 320 * 2**20
-"""Of the file of a whole mission, parsed; the largest that is read takes 300 MB."""
 MOST_WAITING = 8
 NICER_BY = 10
 """The flight's own process goes first on a busy machine."""
@@ -66,26 +64,22 @@ class Workers:
 
         Raises WorkStopped, WorkersBusy, and what `work` raises. A caller that is cancelled ends the work.
         """
-        return await self.run_within(self.memory_bytes, work, *args, **kwargs)
-
-    async def run_within(self, memory_bytes: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """As run, with another limit of memory."""
         if self._waiting >= MOST_WAITING:
             raise WorkersBusy(ReadersBusy(self._waiting))
         pool = self._opened()
         self._waiting += 1
         try:
-            bounded = (memory_bytes, work, *args)
+            bounded = (self.memory_bytes, work, *args)
             return await asyncio.wrap_future(pool.schedule(_bounded, bounded, kwargs, timeout=self.time_s))
         except TimeoutError as error:
-            raise WorkStopped(FileTooHeavy("time", self.time_s, memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("time", self.time_s, self.memory_bytes)) from error
         except MemoryError as error:
-            raise WorkStopped(FileTooHeavy("memory", self.time_s, memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("memory", self.time_s, self.memory_bytes)) from error
         except RecursionError as error:
-            raise WorkStopped(FileTooHeavy("depth", self.time_s, memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("depth", self.time_s, self.memory_bytes)) from error
         except ProcessExpired as error:
             log.warning("the process that reads files ended: %s", error)
-            raise WorkStopped(FileTooHeavy("process", self.time_s, memory_bytes)) from error
+            raise WorkStopped(FileTooHeavy("process", self.time_s, self.memory_bytes)) from error
         finally:
             self._waiting -= 1
 

@@ -27,8 +27,8 @@ AREA_BYTES = 8 * 2**20
 """With the text of a KML or GeoJSON file inside."""
 RECORDING_BYTES = 128 * 2**20
 """A minute of IQ at the usual rates."""
-EXPORT_BYTES = 48 * 2**20
-"""Of a mission with 32 emitters and a hundred turns, unpacked; the worker that reads it takes six times as much."""
+EXPORT_BYTES = 20 * 2**20
+"""Of a mission with 32 emitters and forty turns, unpacked: the worker that reads it takes up to eight times as much."""
 
 ENTRANCES = ("/api/session", "/api/first-admin", "/api/recovery", "/api/invitation/")
 UPLOADS = ("/api/maps", "/api/overlays", "/api/terrain")

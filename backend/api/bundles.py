@@ -13,7 +13,6 @@ from backend.reasons.request import BundleFileWrong, BundleUnreadable
 from backend.store.brought import WAYS, BundleRefused, read_bundle
 from backend.store.entries import JournalConflict
 from backend.wire.library import MissionBrought
-from backend.workers import MISSION_BYTES
 
 router = APIRouter(prefix="/api", tags=["library"], responses=PROBLEM_RESPONSES)
 
@@ -34,7 +33,7 @@ async def bring_in_bundle(
     here is in the list again. 409: the mission is here with other facts."""
     content = await request.body()
     try:
-        brought = await services.workers.run_within(MISSION_BYTES, read_bundle, content)
+        brought = await services.workers.run(read_bundle, content)
     except BundleRefused as refused:
         raise ApiProblem(422, refused.reason) from refused
     try:

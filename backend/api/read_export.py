@@ -16,7 +16,6 @@ from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.reasons.request import ExportUnreadable
 from backend.store.exported import ExportedLater, NotExported, export_of_today
 from backend.wire.resources import ExportedMission, Track, TrackFact
-from backend.workers import MISSION_BYTES
 from planner.reason import ReasonedError
 
 router = APIRouter(prefix="/api/recordings", tags=["review"], responses=PROBLEM_RESPONSES)
@@ -54,7 +53,7 @@ async def read_exported_mission(request: Request, services: ServicesDep) -> Resp
         if len(text) <= SHORT_BYTES:
             answer = await asyncio.to_thread(read_export, text)
         else:
-            answer = await services.workers.run_within(MISSION_BYTES, read_export, text)
+            answer = await services.workers.run(read_export, text)
     except ExportRefused as refused:
         raise ApiProblem(422, refused.reason) from refused
     return Response(answer, media_type="application/json")

@@ -91,12 +91,6 @@ async def test_geometry_that_takes_too_much_memory_is_too_heavy(strict: Workers)
         await strict.run(_break_geometry)
 
 
-async def test_another_limit_of_memory_is_for_one_file(strict: Workers) -> None:
-    assert await strict.run_within(600 * 2**20, _fill, 300 * 2**20) == 300 * 2**20
-    with pytest.raises(WorkStopped):
-        await strict.run(_fill, 300 * 2**20)
-
-
 async def test_a_file_that_takes_too_much_leaves_the_next_its_memory(strict: Workers) -> None:
     strict.time_s = 60.0
     with pytest.raises(WorkStopped):
