@@ -45,15 +45,22 @@ FEWEST_TURNS = 2
 def home_of(telemetry: Telemetry) -> tuple[Place | None, float | None]:
     """The vehicle's home and its height AMSL; where it stands when the autopilot has not said.
 
-    Both autopilots make the place where they are armed their home, and until then tell of the last one: a vehicle that
-    was carried, or landed elsewhere, takes off from a home of which nobody has heard yet.
+    Both autopilots make the place and the height where they are armed their home, and until then tell of the last one:
+    a vehicle that was carried, or landed elsewhere, or whose barometer drifts, takes off from a home that nobody has
+    heard of yet.
     """
-    if _home_away_m(telemetry) is not None:
-        return telemetry.position, telemetry.altitude_amsl_m
-    amsl = telemetry.home_amsl_m
-    if amsl is None and telemetry.altitude_amsl_m is not None:
-        amsl = telemetry.altitude_amsl_m - (telemetry.altitude_relative_m or 0.0)
-    return telemetry.home or telemetry.position, amsl
+    stands, amsl = telemetry.altitude_amsl_m, telemetry.home_amsl_m
+    if stands is not None and _waits(telemetry):
+        amsl = stands
+    elif stands is not None and amsl is None:
+        amsl = stands - (telemetry.altitude_relative_m or 0.0)
+    home = telemetry.position if _home_away_m(telemetry) is not None else telemetry.home
+    return home or telemetry.position, amsl
+
+
+def _waits(telemetry: Telemetry) -> bool:
+    """To be armed."""
+    return telemetry.armed is False and telemetry.in_air is False
 
 
 def _home_away_m(telemetry: Telemetry) -> float | None:
@@ -61,7 +68,7 @@ def _home_away_m(telemetry: Telemetry) -> float | None:
     place, home = telemetry.position, telemetry.home
     if place is None or home is None or telemetry.altitude_amsl_m is None:
         return None
-    if telemetry.armed is not False or telemetry.in_air is not False:
+    if not _waits(telemetry):
         return None
     away_m = math.hypot(*LocalFrame(home).to_enu(place))
     return away_m if away_m > ABOVE_HOME_M else None

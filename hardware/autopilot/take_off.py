@@ -15,6 +15,7 @@ from hardware.reasons.vehicle_news import TriedAgain
 
 LEAVE_GROUND_S = 60.0
 MOST_SAID = 3
+HOME_SET_S = 0.25
 
 
 async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
@@ -42,6 +43,17 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
     guidance.spot = (guidance.here()[0], _amsl_of(guidance, altitude_relative_m))
 
 
+async def _hear_home(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
+    """Arming has set home, and a moment later heights are above that."""
+    snapshot = guidance.monitor.snapshot
+    armed_at_s = snapshot.position_at_s or 0.0
+
+    def heard() -> bool:
+        return (snapshot.position_at_s or 0.0) > armed_at_s + HOME_SET_S
+
+    await guidance.until(manoeuvre, Deadline(guidance.monitor.clock, 1.0, 0.5), heard)
+
+
 def _amsl_of(guidance: Guidance, relative_m: float) -> float:
     """As home is now: arming sets it to where the vehicle stands."""
     return guidance.here()[1] + relative_m - (guidance.monitor.snapshot.altitude_relative_m or 0.0)
@@ -67,6 +79,7 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
             if not snapshot.armed:
                 await guidance.send(manoeuvre, arm(), dialect.take_off_modes, "arming")
                 snapshot.arming_at_s = clock.now()
+                await _hear_home(guidance, manoeuvre)
                 stood_amsl_m = guidance.here()[1]
             take_off = dialect.take_off(relative_m, _amsl_of(guidance, relative_m))
             await guidance.send(manoeuvre, take_off, dialect.take_off_modes, "take_off")

@@ -244,6 +244,16 @@ async def test_a_take_off_refused_on_the_ground_is_ordered_again_wherever_home_w
     assert truth["altitude_relative_m"] == pytest.approx(10.0, abs=1.0)
 
 
+@pytest.mark.parametrize("drift_m", [-3.0, 1.4])
+async def test_a_take_off_ends_at_the_height_above_the_home_that_arming_sets(rig: Rig, drift_m: float) -> None:
+    """PX4 is told a height AMSL: from the home of before, it hung below the one that was waited for."""
+    await rig.sim.order("home_drift", up_m=drift_m)
+    await asyncio.wait_for(rig.vehicle.take_off(20.0), 60)
+
+    truth = await rig.sim.order("truth")
+    assert truth["altitude_relative_m"] == pytest.approx(20.0, abs=1.0)
+
+
 async def test_a_pilot_who_selects_a_mode_on_the_ground_ends_the_take_off(px4: Rig) -> None:
     await px4.clock.sleep(7.0)
     await px4.sim.order("prearm", ok=False)
