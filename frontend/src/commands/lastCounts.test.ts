@@ -1,6 +1,7 @@
 // @vitest-environment happy-dom
 // Of two orders the last one pressed counts, whatever becomes of either on its way.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { t } from "../i18n";
 import type { Sending } from "../sources/api";
 import { accepted, FakeSource } from "../sources/fakeSource";
 import { localProblem, RequestFailed, unreachable } from "../sources/problem";
@@ -8,6 +9,7 @@ import { source as connected, live } from "../state/connection";
 import type { Flown } from "../state/flying";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
+import { session } from "../state/session";
 import type { Command, CommandReply, Recorded } from "../wire";
 import { confirmProposal, proposal } from "./proposal";
 import { problems } from "./send";
@@ -276,26 +278,66 @@ it.each([-3_600_000, 120_000])("a clock that is set by %d ms tries no longer tha
   expect(sent("hold")).toHaveLength(tries);
 });
 
-/** An entry of the journal. */
-const told = (seq: number, event: object) => ({ seq, event }) as unknown as Recorded;
-const THEIRS = told(2, { kind: "command_accepted", command: "return", command_id: "theirs" });
-const BY_ITSELF = told(2, { kind: "return_ordered", by: null });
-const BEFORE = told(1, { kind: "command_accepted", command: "hold", command_id: "earlier" });
+/** An entry of the journal, so many ms after now. */
+const told = (inMs: number, event: object) => ({ seq: 1, at_utc: new Date(Date.now() + inMs).toISOString(), event }) as unknown as Recorded;
+const theirs = { kind: "command_accepted", command: "return", command_id: "theirs" };
+const byItself = { kind: "return_ordered", by: null, craft_id: "c" };
+const M_SHOWN = { ...emptyLive, mission: { ...emptyLive.mission, missionId: "m" } };
 
 it.each([
-  ["what somebody else has ordered since", [BEFORE, THEIRS], 1],
-  ["what the mission has ordered by itself since", [BEFORE, BY_ITSELF], 1],
-  ["nothing", [BEFORE], 3],
-])("a hold that is lost goes out no more over %s", async (_what, events, tries) => {
+  ["what somebody else has ordered since", 3000, theirs, 1],
+  ["what the mission has ordered by itself since", 3000, byItself, 1],
+  ["what was ordered before, and is heard only now", -3000, theirs, 3],
+  ["what another craft does by itself", 3000, { ...byItself, craft_id: "d" }, 3],
+])("a hold that is lost, and %s", async (_what, inMs, event, tries) => {
   begin({ hold: ["lost", "lost"] });
-  const mission = { ...emptyLive.mission, missionId: "m" };
-  live.value = { ...emptyLive, mission, events: [BEFORE] };
+  live.value = M_SHOWN;
   void sendUrgent(M, "hold");
   await pass(100);
-  live.value = { ...emptyLive, mission, events };
+  live.value = { ...M_SHOWN, events: [told(inMs, event)] };
   await pass();
   expect(sent("hold")).toHaveLength(tries);
   expect(urgent.value).toEqual({});
+  const gaveUp = problems.value.bar;
+  expect(gaveUp?.detail).toBe(tries === 1 ? t("bar.overtaken") : undefined);
+  expect(gaveUp?.title).toBe(tries === 1 ? t("bar.hold") : undefined);
+});
+
+it("a return given on another page goes out no more over what is heard later", async () => {
+  begin({ return: ["lost"] });
+  void sendUrgent(M, "return");
+  await pass(100);
+  live.value = { ...M_SHOWN, events: [told(3000, { ...theirs, command: "hold" })] };
+  await pass();
+  expect(source.done).toEqual([]);
+});
+
+it("is given up with a word after a minute, whose last try is no longer than what is left of it", async () => {
+  begin({ hold: Array<Fate>(200).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(120_000);
+  expect(problems.value.bar).toMatchObject({ title: t("bar.hold"), detail: t("bar.unanswered") });
+  expect(sent("hold").at(-1)!.timeoutMs).toBeLessThan(1000);
+});
+
+it("keeps the refusal of a newer order in sight, whatever becomes of an older one", async () => {
+  begin({ return: ["late reply"], hold: ["refused"] });
+  void sendUrgent(M, "return");
+  await pass(100);
+  void sendUrgent(M, "hold");
+  await pass();
+  expect(problems.value.bar?.reason?.code).toBe("pilot_controls");
+});
+
+it.each(["hold", "abort"] as const)("%s is not given under the session that follows", async (kind) => {
+  begin({ [kind]: ["lost"] });
+  void sendUrgent(M, kind);
+  await pass(100);
+  session.value = { mode: "accounts", person: null } as never;
+  await pass(100);
+  session.value = null;
+  await pass();
+  expect(source.done).toEqual([]);
 });
 
 it("does not resume once control is taken, where something was ordered meanwhile", async () => {

@@ -1,10 +1,12 @@
 // Abort, hold, return and landing: sent at once, and again under the same id until the server answers. Every press has a
 // number: the server carries out none that reaches it after a later one of this page, so that the last one given counts.
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
+import { type MessageKey, t } from "../i18n";
 import { newCommandId } from "../sources/api";
-import { isRefusal, RequestFailed, refusal } from "../sources/problem";
-import { live, source } from "../state/connection";
+import { isRefusal, localProblem, RequestFailed, refusal } from "../sources/problem";
+import { live, serverNowMs, source } from "../state/connection";
 import type { Flown } from "../state/flying";
+import { entered } from "../state/session";
 import { TAP_MS } from "../state/tap";
 import type { Problem, Recorded } from "../wire";
 import { asProblem, report, steered } from "./send";
@@ -29,6 +31,8 @@ const LONGEST_TRY_MS = 20_000;
 /** By then the server sends a vehicle home whose consoles are gone; later an order would act on one that its giver no longer sees. */
 const GIVE_UP_MS = 60_000;
 const SHOWN_MS = 4000;
+/** What was ordered sooner after the press may have been ordered before it: the server's clock is known no better. */
+const CLOCKS_MS = 2000;
 const STEERING: readonly string[] = ["hold", "return", "land", "resume", "abort"];
 
 interface Order {
@@ -40,8 +44,8 @@ interface Order {
   commandId: string;
   /** By both clocks: one is set, the other stands still while the machine sleeps. */
   pressedMs: readonly [number, number];
-  /** What the journal had told by then. */
-  heardSeq: number;
+  /** By the server's clock. */
+  servedMs: number;
   shown: UrgentState | null;
   /** It is tried no more: something newer counts. */
   isEnded?: boolean;
@@ -57,10 +61,15 @@ const underWay = new Set<Order>();
 /** Leaving the page forgets them: the browser asks first. */
 addEventListener("beforeunload", (event) => underWay.size > 0 && event.preventDefault());
 
+/** Whoever enters next has given no order. */
+effect(() => {
+  if (entered.value === "out") for (const order of underWay) end(order);
+});
+
 const toOf = ({ id, craftId }: Flown): string => id ?? craftId;
 const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to && !order.isEnded);
 const clocks = (): readonly [number, number] => [Date.now(), performance.now()];
-const isLate = ({ pressedMs }: Order): boolean => clocks().some((now, clock) => now - pressedMs[clock]! > GIVE_UP_MS);
+const leftMs = ({ pressedMs }: Order): number => GIVE_UP_MS - Math.max(...clocks().map((now, clock) => now - pressedMs[clock]!));
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -93,15 +102,25 @@ function endOlder(to: string, press: number): void {
   for (const order of ordersTo(to)) if (order.press < press && order.kind !== "abort") end(order);
 }
 
-function isSteering({ event }: Recorded): boolean {
-  if (event.kind === "return_ordered" || event.kind === "land_ordered") return event.by === null;
+function isSteering({ event }: Recorded, craftId: string): boolean {
+  if (event.kind === "return_ordered" || event.kind === "land_ordered") return event.by === null && event.craft_id === craftId;
   return event.kind === "command_accepted" && STEERING.includes(event.command) && !ownIds.has(event.command_id);
 }
 
 /** Has somebody else, or the mission by itself, ordered something since? As far as the journal is heard here. */
-function isOvertaken({ flown, heardSeq }: Order): boolean {
+function isOvertaken({ flown, servedMs }: Order): boolean {
   const { mission, events } = live.peek();
-  return mission.missionId === flown.id && events.some((told) => told.seq > heardSeq && isSteering(told));
+  const isSince = ({ at_utc }: Recorded) => Date.parse(at_utc) > servedMs + CLOCKS_MS;
+  return mission.missionId === flown.id && events.some((told) => isSince(told) && isSteering(told, flown.craftId));
+}
+
+let toldPress = 0;
+
+/** What became of an order says nothing of a newer one. */
+function tell(press: number, problem: Problem | null): void {
+  if (press < toldPress) return;
+  toldPress = press;
+  report("bar", problem);
 }
 
 /** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
@@ -116,7 +135,6 @@ export async function sendUrgent(flown: Flown, kind: Urgent): Promise<void> {
     if (order.kind === kind) end(order);
     else if (kind !== "abort" && order.kind !== "abort") show(order, null);
   }
-  report("bar", null);
   await give(flown, kind);
 }
 
@@ -127,8 +145,8 @@ export async function resume(flown: Flown): Promise<void> {
   const press = newPress(to);
   lastTap = null;
   const isLast = () => lastPress.get(to) === press;
+  tell(press, null);
   let problem: Problem;
-  report("bar", null);
   try {
     const from = source.peek()!;
     const crafts = live.peek().status?.value.crafts.filter(({ mission_id }) => mission_id === id) ?? [];
@@ -137,14 +155,14 @@ export async function resume(flown: Flown): Promise<void> {
       : from.order(craftId, { kind: "resume" }, { press }));
     if (reply.accepted) {
       // what was ordered before may still be due to the mission's other crafts
-      if (id === null || crafts.length < 2) endOlder(to, press);
+      if (id === null || crafts.length === 1) endOlder(to, press);
       return;
     }
     problem = refusal(reply.reason);
   } catch (error) {
     problem = asProblem(error);
   }
-  if (isLast()) report("bar", problem);
+  tell(press, problem);
 }
 
 /** Somebody who enters after a session has ended has given no order. */
@@ -154,11 +172,17 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
   const { id, craftId } = flown;
   const to = toOf(flown);
   const press = newPress(to);
-  const { mission, events } = live.peek();
-  const heardSeq = mission.missionId === id ? (events.at(-1)?.seq ?? 0) : Number.POSITIVE_INFINITY;
-  const own: Order = { flown, kind, to, press, commandId: newId(), pressedMs: clocks(), heardSeq, shown: null };
+  const servedMs = serverNowMs.peek();
+  const own: Order = { flown, kind, to, press, commandId: newId(), pressedMs: clocks(), servedMs, shown: null };
+  const giveUp = (why: MessageKey) => tell(press, localProblem(t(`bar.${kind}` satisfies MessageKey), t(why)));
+  tell(press, null);
   underWay.add(own);
-  for (let tries = 0; !own.isEnded && !isLate(own); ) {
+  for (let tries = 0; !own.isEnded; ) {
+    const left = leftMs(own);
+    if (left <= 0) {
+      giveUp("bar.unanswered");
+      break;
+    }
     // an abort may be refused where a hold is not: only another kind is waited for
     if (kind !== "abort" && ordersTo(to).some((order) => order.press > press && order.kind !== "abort")) {
       show(own, null);
@@ -166,15 +190,19 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
       continue;
     }
     const from = source.peek();
-    if (!from || (tries > 0 && kind !== "abort" && isOvertaken(own))) break;
+    if (!from) break;
+    if (tries > 0 && kind !== "abort" && isOvertaken(own)) {
+      giveUp("bar.overtaken");
+      break;
+    }
     show(own, { stage: tries === 0 ? "sending" : "retrying", count: tries });
-    const sending = { commandId: own.commandId, press, timeoutMs: Math.min(FIRST_TRY_MS * 2 ** tries, LONGEST_TRY_MS) };
+    const sending = { commandId: own.commandId, press, timeoutMs: Math.min(FIRST_TRY_MS * 2 ** tries, LONGEST_TRY_MS, left) };
     tries += 1;
     try {
       const reply = await (id !== null ? from.send(id, { kind }, sending) : from.order(craftId, { kind: kind as InNoMission }, sending));
       if (reply.accepted) endOlder(to, press);
       if (own.isEnded || reply.reason?.code === "later_order_counts") break;
-      report("bar", reply.accepted ? null : refusal(reply.reason));
+      tell(press, reply.accepted ? null : refusal(reply.reason));
       if (!reply.accepted) break;
       underWay.delete(own);
       show(own, { stage: "accepted", count: tries - 1 });
@@ -182,7 +210,7 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
       break;
     } catch (error) {
       if (own.isEnded) break;
-      report("bar", asProblem(error));
+      tell(press, asProblem(error));
       if (isFinal(error)) break;
       await pause(RETRY_MS);
     }

@@ -4,45 +4,35 @@ import { isRefusal, type RequestFailed } from "../sources/problem";
 import { drop, kept } from "../state/kept";
 import type { Mission, MissionSpec } from "../wire";
 
-const DRAFTED_SEQ = 1;
-
 const storageKey = (key: string) => `crossfix.saving.${key}`;
 
-/** Of this tab, over a reload too. Two tabs draft two missions. */
-function missionIdFor(key: string): string {
-  const known = kept(storageKey(key), "sessionStorage");
-  if (known) return known;
-  const id = api.newCommandId();
+/** Of this specification, over a reload too: what was changed since is another mission, and so is another tab's. */
+function missionIdFor(key: string, spec: MissionSpec): string {
+  const [id, sent] = JSON.parse(kept(storageKey(key), "sessionStorage") ?? "[]") as string[];
+  if (id && sent === JSON.stringify(spec)) return id;
+  const fresh = api.newCommandId();
   try {
-    sessionStorage.setItem(storageKey(key), id);
+    sessionStorage.setItem(storageKey(key), JSON.stringify([fresh, JSON.stringify(spec)]));
   } catch {
     // full, or kept from it: pressed again, it drafts another
   }
-  return id;
+  return fresh;
 }
 
 /** The next save drafts another mission. */
 export const forgetSaving = (key: string): void => drop(storageKey(key), "sessionStorage");
 
-const hasCode = (error: unknown, code: string): error is RequestFailed => isRefusal(error) && error.problem.reason?.code === code;
-
 /** Who saved another specification meanwhile: the number to save over, null when that is not what is wrong. */
 export const savedMeanwhile = ({ problem: { reason } }: RequestFailed): number | null =>
   reason?.code === "edited_meanwhile" ? reason.seq : null;
 
-/** What the answer was lost of is brought up to date, unless somebody else has it by now. */
+/** Sent again after its answer was lost, the same specification is drafted once. */
 export async function draftOnce(key: string, spec: MissionSpec): Promise<Mission> {
-  const id = missionIdFor(key);
+  const id = missionIdFor(key, spec);
   try {
     return await api.draftMission(spec, id);
   } catch (error) {
-    if (!hasCode(error, "drafted_before")) throw error;
-  }
-  try {
-    return await api.editMission(id, spec, DRAFTED_SEQ);
-  } catch (error) {
-    if (!isRefusal(error) || error.problem.status !== 409) throw error;
-    forgetSaving(key);
-    return draftOnce(key, spec);
+    if (!isRefusal(error) || error.problem.reason?.code !== "drafted_before") throw error;
+    return api.mission(id);
   }
 }

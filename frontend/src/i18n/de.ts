@@ -27,6 +27,8 @@ export const de: Record<MessageKey, string> = {
   "bar.battery.tooLittle": "Heimweg braucht {percent} %",
   "bar.nothingFlies": "Es fliegt nichts",
   "bar.sending": "{command}: wird gesendet …",
+  "bar.overtaken": "Aufgegeben: Inzwischen wurde etwas anderes befohlen.",
+  "bar.unanswered": "Aufgegeben: Es kam keine Antwort. Vielleicht ist es ausgeführt.",
   "bar.retrying": "{command}: noch nicht bestätigt, neuer Versuch ({count})",
   "bar.order.tried": "{command}: gesendet, vom Fluggerät noch nicht bestätigt",
   "bar.order.done": "{command}: erledigt, das Fluggerät zeigt es",

@@ -308,8 +308,8 @@ function OrderNote() {
   const command = t(`bar.${order.order}` satisfies MessageKey);
   const way = t(`bar.${order.way}` satisfies MessageKey);
   const reason = order.because ? reasonText(order.because) : "";
-  const pressed = urgent.value[order.order] !== undefined;
-  if (order.stage === "done" && order.because === null) return pressed ? <span>{t("bar.order.done", { command })}</span> : null;
+  const isAccepted = urgent.value[order.order]?.stage === "accepted"; // "done" may be of an earlier one
+  if (order.stage === "done" && order.because === null) return isAccepted ? <span>{t("bar.order.done", { command })}</span> : null;
   const key = order.stage === "done" ? "bar.order.instead" : reason ? "bar.order.refused" : "bar.order.tried";
   return (
     <span class={reason ? "not-done" : ""} data-testid="order-note" data-stage={order.stage} role={reason ? "alert" : "status"}>

@@ -41,6 +41,7 @@ export function inTilePlace<T>(load: (ends: AbortController) => Promise<T>, want
     new Promise<T>((resolve, reject) => {
       const ends = new AbortController();
       const end = AbortSignal.any([wanted, AbortSignal.timeout(TILE_MS)]);
+      end.throwIfAborted();
       end.addEventListener("abort", () => {
         ends.abort(end.reason);
         reject(end.reason); // an archive's first bytes are read for all of its tiles, and heed nobody's end

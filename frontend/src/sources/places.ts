@@ -4,6 +4,7 @@
 export function places(free: number) {
   const waiting = new Set<() => void>();
   return async <T>(work: () => Promise<T>, wanted?: AbortSignal): Promise<T> => {
+    wanted?.throwIfAborted();
     if (free > 0) free--;
     else
       await new Promise<void>((begin, leave) => {

@@ -1,8 +1,11 @@
 // A file as the body of a POST, with progress (fetch cannot tell it).
 import { t } from "../i18n";
 import { problemOf } from "./api";
-import { inPlace } from "./places";
+import { inPlace, places } from "./places";
 import { unreachable } from "./problem";
+
+/** However many files are chosen, there are places for what somebody waits for. */
+const oneAtATime = places(1);
 
 /** The answer's JSON. */
 export function upload<Answer>(
@@ -19,7 +22,7 @@ export function upload<Answer>(
       request.upload.onprogress = (event) => {
         if (event.lengthComputable) onProgress(event.loaded / event.total);
       };
-      request.onerror = () => reject(unreachable(t("problem.upload")));
+      request.onerror = request.onabort = () => reject(unreachable(t("problem.upload")));
       request.onload = () => {
         if (request.status < 300) resolve(JSON.parse(request.responseText) as Answer);
         else {
@@ -32,5 +35,5 @@ export function upload<Answer>(
       };
       request.send(file);
     });
-  return inPlace(send);
+  return oneAtATime(() => inPlace(send));
 }
