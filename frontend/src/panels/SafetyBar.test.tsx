@@ -239,7 +239,7 @@ it("asks for a slide no more once what it was for has gone away, and does not co
   expect(part("land")).not.toBeNull();
 });
 
-it.each(["mission", "vehicle"])("asks for a slide anew once another %s is meant", async (what) => {
+it.each(["mission", "vehicle"])("asks for another slide once another %s is meant", async (what) => {
   const one = { craft_id: "a", mission_id: "mA", phase: "hold" } as const;
   const other = { ...one, ...(what === "mission" ? { mission_id: "mB" } : { craft_id: "b" }) };
   show(new FakeSource(null), craftStatus(one));

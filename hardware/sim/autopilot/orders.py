@@ -13,7 +13,7 @@
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
     {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent"
      | "unanswered", "count": 1, "of": 0}   of: refused or unanswered are those of this MAV_CMD only
-    {"do": "home_drift", "up_m": -3}          so high it says it is above home, until arming sets home anew
+    {"do": "home_drift", "up_m": -3}          this high it says it is above home, until arming sets home
     {"do": "prearm", "ok": false}
     {"do": "say", "text": "", "severity": 2, "lost": []}   a STATUSTEXT, its lost chunks left out; "hex" for any bytes
     {"do": "fence_fault", "mute": 0, "deaf_after": -1, "altered": false}   see firmware.Faults; as given, all at once

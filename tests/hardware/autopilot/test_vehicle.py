@@ -246,7 +246,7 @@ async def test_a_take_off_refused_on_the_ground_is_ordered_again_wherever_home_w
 
 @pytest.mark.parametrize("drift_m", [-3.0, 1.4])
 async def test_a_take_off_ends_at_the_height_above_the_home_that_arming_sets(rig: Rig, drift_m: float) -> None:
-    """PX4 is told a height AMSL: from the home of before, it hung below the one that was waited for."""
+    """PX4 takes a height AMSL: from the home of before, it hung below the one that was waited for."""
     await rig.sim.order("home_drift", up_m=drift_m)
     await asyncio.wait_for(rig.vehicle.take_off(20.0), 60)
 

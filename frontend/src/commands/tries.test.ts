@@ -1,0 +1,187 @@
+// @vitest-environment happy-dom
+// How often an order is tried, what a second press does, and when it is given up.
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { t } from "../i18n";
+import { accepted } from "../sources/fakeSource";
+import { type Answer, type Fate, LossyServer, later } from "../sources/lossyServer";
+import { unreachable } from "../sources/problem";
+import { source as connected, live } from "../state/connection";
+import type { Flown } from "../state/flying";
+import { emptyLive } from "../state/live";
+import { open } from "../state/open";
+import { session } from "../state/session";
+import type { Command, Recorded } from "../wire";
+import { problems } from "./send";
+import { sendUrgent, urgent } from "./urgent";
+
+const M: Flown = { id: "m", craftId: "c", phase: "flying" };
+
+let source: LossyServer;
+const begin = (fates: Partial<Record<Command["kind"], Answer[]>>) => {
+  source = new LossyServer(fates);
+  open(source);
+};
+const pass = (ms = 10_000) => vi.advanceTimersByTimeAsync(ms);
+const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
+
+let begun = 0;
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.advanceTimersByTime(60_000 * ++begun); // or a press would be the second tap of the test before
+});
+afterEach(async () => {
+  await vi.runAllTimersAsync();
+  vi.useRealTimers();
+  problems.value = {};
+  live.value = emptyLive;
+});
+
+/** An entry of the journal, inMs from now. */
+const told = (inMs: number, event: object) => ({ seq: 1, at_utc: new Date(Date.now() + inMs).toISOString(), event }) as unknown as Recorded;
+const theirs = { kind: "command_accepted", command: "return", command_id: "theirs" };
+const byItself = { kind: "return_ordered", by: null, craft_id: "c" };
+const M_SHOWN = { ...emptyLive, mission: { ...emptyLive.mission, missionId: "m" } };
+
+describe("a hold pressed again", () => {
+  it("while the answer to the first hangs goes out", async () => {
+    begin({ hold: ["late reply"] });
+    source.answer = () => later(3000).then(() => accepted);
+    void sendUrgent(M, "hold");
+    await pass(1000);
+    void sendUrgent(M, "hold");
+    await pass(100);
+    expect(sent("hold")).toHaveLength(2);
+    await pass(20_000);
+    expect(urgent.value).toEqual({});
+  });
+
+  it("by a thumb that taps twice goes out once", async () => {
+    begin({});
+    source.answer = () => later(3000).then(() => accepted);
+    void sendUrgent(M, "hold");
+    await pass(200);
+    void sendUrgent(M, "hold");
+    await pass(20_000);
+    expect(sent("hold")).toHaveLength(1);
+  });
+});
+
+it.each(["abort", "hold", "return", "land"] as const)("%s pressed again while the first hangs goes out at once", async (kind) => {
+  begin({});
+  vi.spyOn(source, "answer");
+  const send = source.send.bind(source);
+  vi.spyOn(source, "send").mockImplementationOnce(async (...order) => {
+    await send(...order);
+    await later(20_000);
+    throw unreachable("no link");
+  });
+  void sendUrgent(M, kind);
+  await pass(1000);
+  void sendUrgent(M, kind);
+  await pass(100);
+  expect(sent(kind)).toHaveLength(2);
+  expect(new Set(sent(kind).map(({ press }) => press)).size).toBe(2);
+  await pass(120_000);
+  expect(sent(kind)).toHaveLength(2);
+});
+
+it("goes out every 600 ms for a thumb that keeps tapping", async () => {
+  begin({ hold: Array<Fate>(200).fill("lost") });
+  for (let taps = 0; taps < 20; taps++) {
+    void sendUrgent(M, "hold");
+    await pass(400);
+  }
+  expect(new Set(sent("hold").map(({ commandId }) => commandId)).size).toBe(10);
+});
+
+it("is tried again when the first try hangs, for longer each time", async () => {
+  begin({ hold: Array<Fate>(200).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(120_000);
+  expect(
+    sent("hold")
+      .slice(0, 5)
+      .map(({ timeoutMs }) => timeoutMs),
+  ).toEqual([3000, 6000, 12_000, 20_000, 20_000]);
+});
+
+it.each([-3_600_000, 120_000])("a clock that is set by %d ms tries no longer than a minute, and takes a second press", async (ms) => {
+  begin({ hold: Array<Fate>(2000).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(1000);
+  vi.setSystemTime(Date.now() + ms);
+  void sendUrgent(M, "hold");
+  await pass(100);
+  expect(new Set(sent("hold").map(({ press }) => press)).size).toBe(2);
+  await pass(61_000);
+  const tries = sent("hold").length;
+  await pass(600_000);
+  expect(sent("hold")).toHaveLength(tries);
+});
+
+it.each([
+  ["what somebody else has ordered since", 3000, theirs, 1],
+  ["what the mission has ordered by itself since", 3000, byItself, 1],
+  ["what was ordered before, and is heard only now", -3000, theirs, 3],
+  ["what another craft does by itself", 3000, { ...byItself, craft_id: "d" }, 3],
+])("a hold that is lost, and %s", async (_what, inMs, event, tries) => {
+  begin({ hold: ["lost", "lost"] });
+  live.value = M_SHOWN;
+  void sendUrgent(M, "hold");
+  await pass(100);
+  live.value = { ...M_SHOWN, events: [told(inMs, event)] };
+  await pass();
+  expect(sent("hold")).toHaveLength(tries);
+  expect(urgent.value).toEqual({});
+  const gaveUp = problems.value.bar;
+  expect(gaveUp?.detail).toBe(tries === 1 ? t("bar.overtaken") : undefined);
+  expect(gaveUp?.title).toBe(tries === 1 ? t("bar.hold") : undefined);
+});
+
+it("a return given on another page goes out no more over what is heard later", async () => {
+  begin({ return: ["lost"] });
+  void sendUrgent(M, "return");
+  await pass(100);
+  live.value = { ...M_SHOWN, events: [told(3000, { ...theirs, command: "hold" })] };
+  await pass();
+  expect(source.done).toEqual([]);
+});
+
+it("is given up with a word after a minute, whose last try is no longer than what is left of it", async () => {
+  begin({ hold: Array<Fate>(200).fill("lost") });
+  void sendUrgent(M, "hold");
+  await pass(120_000);
+  expect(problems.value.bar).toMatchObject({ title: t("bar.hold"), detail: t("bar.unanswered") });
+  expect(sent("hold").at(-1)!.timeoutMs).toBeLessThan(1000);
+});
+
+it.each(["hold", "abort"] as const)("%s is not given under the session that follows", async (kind) => {
+  begin({ [kind]: ["lost"] });
+  void sendUrgent(M, kind);
+  await pass(100);
+  session.value = { mode: "accounts", person: null } as never;
+  await pass(100);
+  session.value = null;
+  await pass();
+  expect(source.done).toEqual([]);
+});
+
+it.each([408, 429, 503])("goes on after a %d, which is no refusal", async (status) => {
+  begin({ hold: [status] });
+  void sendUrgent(M, "hold");
+  await pass();
+  expect(source.done).toEqual(["hold"]);
+  expect(new Set(sent("hold").map(({ commandId }) => commandId)).size).toBe(1);
+});
+
+it("ends with the session: whoever enters next has given no order", async () => {
+  begin({ hold: [401, "lost"], return: ["lost"] });
+  await sendUrgent(M, "hold");
+  expect(problems.value.bar?.status).toBe(401);
+  void sendUrgent(M, "return");
+  connected.value = null;
+  await pass();
+  begin({});
+  await pass();
+  expect(source.sent).toEqual([]);
+});
