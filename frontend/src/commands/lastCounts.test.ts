@@ -1,6 +1,7 @@
 // @vitest-environment happy-dom
 // Of two orders the last one pressed counts, whatever becomes of either on its way.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { t } from "../i18n";
 import { accepted } from "../sources/fakeSource";
 import { type Answer, type Fate, LossyServer, later } from "../sources/lossyServer";
 import { live } from "../state/connection";
@@ -142,7 +143,7 @@ describe("a hold, then a resume", () => {
   });
 });
 
-it("an abort that fails again and again leaves a newer hold alone", async () => {
+it("an abort that fails again and again leaves a newer hold alone, and says that it was given up", async () => {
   begin({ abort: Array<Fate>(200).fill("lost") });
   void sendUrgent(M, "abort");
   await pass(100);
@@ -150,6 +151,7 @@ it("an abort that fails again and again leaves a newer hold alone", async () => 
   await pass(120_000);
   expect(source.done).toEqual(["hold"]);
   expect(sent("abort").length).toBeGreaterThan(60);
+  expect(problems.value.bar).toMatchObject({ title: t("bar.abort"), detail: t("bar.unanswered") });
 });
 
 it("keeps the refusal of a newer order in sight, whatever becomes of an older one", async () => {

@@ -174,7 +174,7 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
   const press = newPress(to);
   const servedMs = serverNowMs.peek();
   const own: Order = { flown, kind, to, press, commandId: newId(), pressedMs: clocks(), servedMs, shown: null };
-  const giveUp = (why: MessageKey) => tell(press, localProblem(t(`bar.${kind}` satisfies MessageKey), t(why)));
+  const giveUp = (why: MessageKey) => report("bar", localProblem(t(`bar.${kind}` satisfies MessageKey), t(why)));
   tell(press, null);
   underWay.add(own);
   for (let tries = 0; !own.isEnded; ) {
