@@ -3,12 +3,12 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { t } from "../i18n";
 import { accepted } from "../sources/fakeSource";
-import { type Answer, type Fate, LossyServer, later } from "../sources/lossyServer";
 import { live } from "../state/connection";
 import type { Flown } from "../state/flying";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import type { Command, CommandReply } from "../wire";
+import { type Answer, type Fate, LossyServer, later } from "./lossyServer";
 import { confirmProposal, proposal } from "./proposal";
 import { problems } from "./send";
 import { resume, sendUrgent, urgent } from "./urgent";

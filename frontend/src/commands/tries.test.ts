@@ -3,7 +3,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { t } from "../i18n";
 import { accepted } from "../sources/fakeSource";
-import { type Answer, type Fate, LossyServer, later } from "../sources/lossyServer";
 import { unreachable } from "../sources/problem";
 import { source as connected, live } from "../state/connection";
 import type { Flown } from "../state/flying";
@@ -11,6 +10,7 @@ import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import { session } from "../state/session";
 import type { Command, Recorded } from "../wire";
+import { type Answer, type Fate, LossyServer, later } from "./lossyServer";
 import { problems } from "./send";
 import { sendUrgent, urgent } from "./urgent";
 

@@ -60,14 +60,16 @@ it("asks for a hold only of a mission that flies", async () => {
 });
 
 it("says of the area that is typed only that it could not be stored", async () => {
+  const isShown = () => vi.waitFor(() => expect(part("area-section")).not.toBeNull());
   await show("first");
+  await isShown();
   const stub = vi.spyOn(Storage.prototype, "setItem").mockImplementation(() => {
     throw new DOMException("full");
   });
   act(() => change("flight.fence_margin_m", 61));
-  expect(part("not-stored")).not.toBeNull();
+  await vi.waitFor(() => expect(part("not-stored")).not.toBeNull());
   stub.mockRestore();
   await show("second");
-  expect(part("area-section")).not.toBeNull();
+  await isShown();
   expect(part("not-stored")).toBeNull();
 });

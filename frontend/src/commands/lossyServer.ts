@@ -1,10 +1,10 @@
 // For tests: a server behind a link that loses and delays orders and answers, as the test chose.
 
+import type { Sending } from "../sources/api";
+import { accepted, FakeSource } from "../sources/fakeSource";
+import { localProblem, RequestFailed, unreachable } from "../sources/problem";
 import { live } from "../state/connection";
 import type { Command, CommandReply } from "../wire";
-import type { Sending } from "./api";
-import { accepted, FakeSource } from "./fakeSource";
-import { localProblem, RequestFailed, unreachable } from "./problem";
 
 const refused: CommandReply = { ...accepted, accepted: false, reason: { code: "pilot_controls" } };
 const late: CommandReply = { ...accepted, accepted: false, reason: { code: "later_order_counts" } };
