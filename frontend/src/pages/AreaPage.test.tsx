@@ -63,12 +63,14 @@ it("says of the area that is typed only that it could not be stored", async () =
   const isShown = () => vi.waitFor(() => expect(part("area-section")).not.toBeNull());
   await show("first");
   await isShown();
-  const stub = vi.spyOn(Storage.prototype, "setItem").mockImplementation(() => {
+  const setItem = () => {
     throw new DOMException("full");
-  });
+  };
+  vi.stubGlobal("localStorage", { getItem: () => null, setItem, removeItem: () => {} });
   act(() => change("flight.fence_margin_m", 61));
   await vi.waitFor(() => expect(part("not-stored")).not.toBeNull());
-  stub.mockRestore();
+  vi.unstubAllGlobals();
+  vi.stubGlobal("fetch", () => new Promise(() => {}));
   await show("second");
   await isShown();
   expect(part("not-stored")).toBeNull();
