@@ -202,7 +202,7 @@ def hostile_files() -> list[HostileFile]:
             "numbers in an exported mission", "/api/recordings/read", b"[" + b"1," * 15 * MEGABYTE + b"1]", False
         ),
         HostileFile(
-            "as many as an export may have", "/api/recordings/read", b"[" + b"1," * 8 * MEGABYTE + b"1]", False
+            "as many as an export may have", "/api/recordings/read", b"[" + b"1," * 10 * MEGABYTE + b"1]", False
         ),
         recording("30,000 bearings", "bearings.csv", bearings(30_000)),
     ]
