@@ -1,6 +1,6 @@
 // @vitest-environment happy-dom
 // Of two orders the last one pressed counts, whatever becomes of either on its way.
-import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { t } from "../i18n";
 import { accepted } from "../sources/fakeSource";
 import { live } from "../state/connection";
@@ -8,7 +8,7 @@ import type { Flown } from "../state/flying";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import type { Command, CommandReply } from "../wire";
-import { type Answer, type Fate, LossyServer, later } from "./lossyServer";
+import { type Answer, type Fate, inTimeOfItsOwn, LossyServer, later, pass } from "./lossyServer";
 import { confirmProposal, proposal } from "./proposal";
 import { problems } from "./send";
 import { resume, sendUrgent, urgent } from "./urgent";
@@ -20,20 +20,9 @@ const begin = (fates: Partial<Record<Command["kind"], Answer[]>>) => {
   source = new LossyServer(fates);
   open(source);
 };
-const pass = (ms = 10_000) => vi.advanceTimersByTimeAsync(ms);
 const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
 
-let begun = 0;
-beforeEach(() => {
-  vi.useFakeTimers();
-  vi.advanceTimersByTime(60_000 * ++begun); // or a press would be the second tap of the test before
-});
-afterEach(async () => {
-  await vi.runAllTimersAsync();
-  vi.useRealTimers();
-  problems.value = {};
-  live.value = emptyLive;
-});
+inTimeOfItsOwn();
 
 function withTwoCrafts(): void {
   const crafts = ["c", "d"].map((craft_id) => ({ craft_id, mission_id: "m" }));

@@ -1,10 +1,13 @@
 // For tests: a server behind a link that loses and delays orders and answers, as the test chose.
 
+import { afterEach, beforeEach, vi } from "vitest";
 import type { Sending } from "../sources/api";
 import { accepted, FakeSource } from "../sources/fakeSource";
 import { localProblem, RequestFailed, unreachable } from "../sources/problem";
 import { live } from "../state/connection";
+import { emptyLive } from "../state/live";
 import type { Command, CommandReply } from "../wire";
+import { problems } from "./send";
 
 const refused: CommandReply = { ...accepted, accepted: false, reason: { code: "pilot_controls" } };
 const late: CommandReply = { ...accepted, accepted: false, reason: { code: "later_order_counts" } };
@@ -51,4 +54,21 @@ export class LossyServer extends FakeSource {
     if (fate?.endsWith("reply lost")) throw unreachable("no link");
     return reply;
   }
+}
+
+export const pass = (ms = 10_000) => vi.advanceTimersByTimeAsync(ms);
+
+/** Each test of the file begins with nothing on its way, and ends so. */
+export function inTimeOfItsOwn(): void {
+  let begun = 0;
+  beforeEach(() => {
+    vi.useFakeTimers();
+    vi.advanceTimersByTime(60_000 * ++begun); // or a press would be the second tap of the test before
+  });
+  afterEach(async () => {
+    await vi.runAllTimersAsync();
+    vi.useRealTimers();
+    problems.value = {};
+    live.value = emptyLive;
+  });
 }

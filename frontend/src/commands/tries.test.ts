@@ -1,6 +1,6 @@
 // @vitest-environment happy-dom
 // How often an order is tried, what a second press does, and when it is given up.
-import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { t } from "../i18n";
 import { accepted } from "../sources/fakeSource";
 import { unreachable } from "../sources/problem";
@@ -10,7 +10,7 @@ import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import { session } from "../state/session";
 import type { Command, Recorded } from "../wire";
-import { type Answer, type Fate, LossyServer, later } from "./lossyServer";
+import { type Answer, type Fate, inTimeOfItsOwn, LossyServer, later, pass } from "./lossyServer";
 import { problems } from "./send";
 import { sendUrgent, urgent } from "./urgent";
 
@@ -21,20 +21,9 @@ const begin = (fates: Partial<Record<Command["kind"], Answer[]>>) => {
   source = new LossyServer(fates);
   open(source);
 };
-const pass = (ms = 10_000) => vi.advanceTimersByTimeAsync(ms);
 const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
 
-let begun = 0;
-beforeEach(() => {
-  vi.useFakeTimers();
-  vi.advanceTimersByTime(60_000 * ++begun); // or a press would be the second tap of the test before
-});
-afterEach(async () => {
-  await vi.runAllTimersAsync();
-  vi.useRealTimers();
-  problems.value = {};
-  live.value = emptyLive;
-});
+inTimeOfItsOwn();
 
 /** An entry of the journal, inMs from now. */
 const told = (inMs: number, event: object) => ({ seq: 1, at_utc: new Date(Date.now() + inMs).toISOString(), event }) as unknown as Recorded;
