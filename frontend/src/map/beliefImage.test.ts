@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { beliefPixels, cividis, contrast, opacity } from "./beliefImage";
+import { beliefPixels, cividis, contrast, imageCorners, opacity } from "./beliefImage";
 
 it("cividis runs from dark blue to yellow and only gets lighter", () => {
   const light = ([r, g, b]: [number, number, number]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
@@ -35,4 +35,19 @@ it("opacity is nothing at nothing and grows", () => {
   expect(opacity(0)).toBe(0);
   expect(opacity(0.1)).toBeLessThan(opacity(0.2));
   expect(opacity(1)).toBeLessThanOrEqual(1);
+});
+
+it.each([
+  [179.995, -179.997, 179.995, 180.003],
+  [179.997, -179.995, -180.003, -179.995],
+])("a picture across the antimeridian from %d to %d is in one piece with its middle where MapLibre takes it", (west, east, from, to) => {
+  const corners = imageCorners({
+    bounds: [
+      [west, 50],
+      [east, 50],
+      [east, 50.01],
+      [west, 50.01],
+    ],
+  });
+  for (const [i, lon] of [from, to, to, from].entries()) expect(corners[i]![0]).toBeCloseTo(lon, 9);
 });

@@ -1,4 +1,5 @@
 // The belief as a picture: cividis (safe for colour-blind eyes), fading to nothing where nothing is.
+import { together } from "../state/geometry";
 import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
 
 /** Every sixteenth colour of cividis (Nunez, Anderton, Renslow 2018), linear in between. */
@@ -67,10 +68,11 @@ export function beliefPixels({ nx, ny, cells }: Pick<BeliefFrame, "nx" | "ny" | 
   return picture;
 }
 
-/** NW, NE, SE, SW: the order in which MapLibre wants an image's corners. */
-export const imageCorners = ({ bounds: [sw, se, ne, nw] }: Pick<BeliefFrame, "bounds">): [LonLat, LonLat, LonLat, LonLat] => [
-  nw,
-  ne,
-  se,
-  sw,
-];
+/** NW, NE, SE, SW: the order in which MapLibre wants an image's corners. In one piece across the antimeridian; MapLibre
+ * takes only images whose middle is within -180 to 180 degrees. */
+export function imageCorners({ bounds }: Pick<BeliefFrame, "bounds">): [LonLat, LonLat, LonLat, LonLat] {
+  const [sw, se, ne, nw] = together(bounds) as BeliefFrame["bounds"];
+  const turns = Math.floor((sw[0] + ne[0] + 360) / 720);
+  const back = ([lon, lat]: LonLat): LonLat => [lon - 360 * turns, lat];
+  return [back(nw), back(ne), back(se), back(sw)];
+}

@@ -100,3 +100,23 @@ it("nothing is drawn of an estimate that is not there", () => {
 it("without a fence of its own the margin around the area is shown", () => {
   expect(planFeatures(someSpec()).features.filter((f) => f.properties?.what === "fence").length).toBeGreaterThan(0);
 });
+
+it("what lies across the antimeridian is drawn in one piece, not around the world", () => {
+  const ring = [
+    [179.998, 50],
+    [-179.998, 50],
+    [-179.998, 50.004],
+    [179.998, 50.004],
+    [179.998, 50],
+  ];
+  const spec = someSpec();
+  const across = { ...spec, area: { type: "Polygon", coordinates: [ring] } } as typeof spec;
+  const there = { ...across, flight: { ...spec.flight, no_fly: [{ type: "MultiPolygon", coordinates: [[ring]] }] } } as typeof spec;
+  const drawn = planFeatures(there).features;
+  expect(new Set(drawn.map((f) => f.properties?.what))).toEqual(new Set(["area", "fence", "no_fly"]));
+  for (const { geometry } of drawn) {
+    const numbers = (geometry as GeoJSON.Polygon).coordinates.flat(3) as unknown as number[];
+    const lons = numbers.filter((_, i) => i % 2 === 0);
+    expect(Math.max(...lons) - Math.min(...lons)).toBeLessThan(0.1);
+  }
+});

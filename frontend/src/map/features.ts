@@ -19,11 +19,20 @@ type Ways = Partial<Pick<MissionView, "ways">>;
 
 export const collection = (features: GeoJSON.Feature[]): Features => ({ type: "FeatureCollection", features });
 
-const feature = (geometry: GeoJSON.Geometry, properties: Record<string, unknown> = {}): GeoJSON.Feature => ({
-  type: "Feature",
-  geometry,
-  properties,
-});
+type Coordinates = GeoJSON.Position | readonly Coordinates[];
+
+/** In one piece across the antimeridian: each corner beside `near`. MapLibre draws 179 to -179 degrees around the world. */
+function inOnePiece(coordinates: Coordinates, near: number): Coordinates {
+  const [lon, ...rest] = coordinates;
+  if (typeof lon === "number") return [beside(lon, near), ...(rest as number[])];
+  return (coordinates as Coordinates[]).map((part) => inOnePiece(part, near));
+}
+
+function feature(geometry: GeoJSON.Geometry | Area, properties: Record<string, unknown> = {}): GeoJSON.Feature {
+  const { type, coordinates } = geometry as { type: GeoJSON.GeoJsonTypes; coordinates: Coordinates };
+  const near = [coordinates].flat(4)[0] as number;
+  return { type: "Feature", geometry: { type, coordinates: inOnePiece(coordinates, near) } as GeoJSON.Geometry, properties };
+}
 const point = (at: LonLat, properties: Record<string, unknown> = {}) => feature({ type: "Point", coordinates: at }, properties);
 const line = (coordinates: LonLat[], properties: Record<string, unknown> = {}) => feature({ type: "LineString", coordinates }, properties);
 const polygon = (ring: LonLat[], properties: Record<string, unknown> = {}) => feature({ type: "Polygon", coordinates: [ring] }, properties);
@@ -41,7 +50,7 @@ export function reachM(spec: MissionSpec | null): number {
 /** The fence as drawn, or the search area with its margin. */
 function fenceFeatures(spec: MissionSpec): GeoJSON.Feature[] {
   const { fence, fence_margin_m: margin } = spec.flight;
-  if (fence) return [feature(fence as GeoJSON.Geometry, { what: "fence" })];
+  if (fence) return [feature(fence as Area, { what: "fence" })];
   return marginOutline(spec.area as Area, margin).map((piece) => line(piece, { what: "fence" }));
 }
 
@@ -54,9 +63,9 @@ export function flightPoints(spec: MissionSpec): LonLat[] {
 export function planFeatures(spec: MissionSpec | null): Features {
   if (!spec) return collection([]);
   return collection([
-    feature(spec.area as GeoJSON.Geometry, { what: "area" }),
+    feature(spec.area as Area, { what: "area" }),
     ...fenceFeatures(spec),
-    ...spec.flight.no_fly.map((area) => feature(area as GeoJSON.Geometry, { what: "no_fly" })),
+    ...spec.flight.no_fly.map((area) => feature(area as Area, { what: "no_fly" })),
   ]);
 }
 
@@ -152,7 +161,7 @@ function estimateFeatures({ belief }: Pick<MissionView, "belief">): GeoJSON.Feat
   const estimate = belief?.fact.estimate;
   if (!estimate) return [];
   const at = lonLat(estimate);
-  const region = feature(estimate.c95 as GeoJSON.Geometry, { what: "c95" });
+  const region = feature(estimate.c95 as Area, { what: "c95" });
   if (belief.fact.bearings === 0) return [region];
   return [region, polygon(circle(at, estimate.expected_rmse_m), { what: "circle" }), point(at, { what: "estimate" })];
 }
@@ -167,7 +176,7 @@ function emittersFeatures(spec: MissionSpec | null, emitters: Emitters, looked: 
     if (!estimate) return [];
     const { fill: colour, ink } = emitterColour(index);
     const marked = point(lonLat(estimate), { what: "emitter", colour, ink, label: String(index + 1) });
-    return id === looked ? [marked] : [feature(estimate.c95 as GeoJSON.Geometry, { what: "emitter_c95", colour }), marked];
+    return id === looked ? [marked] : [feature(estimate.c95 as Area, { what: "emitter_c95", colour }), marked];
   });
 }
 

@@ -2,7 +2,7 @@
 import type { Area } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { polygonsOf } from "./areas";
-import { metresPerDegree } from "./geometry";
+import { beside, metresPerDegree } from "./geometry";
 
 type Edge = [number, number, number, number];
 
@@ -25,10 +25,11 @@ export function marginOutline(area: Area, marginM: number): LonLat[][] {
 
 /** Offset edges and corner arcs that no other edge swallows. */
 function outlined(area: Area, marginM: number): LonLat[][] {
-  const outlines = polygonsOf(area).map(([outline]) => outline ?? []);
-  const origin = outlines[0]?.[0];
+  const rings = polygonsOf(area).map(([outline]) => outline ?? []);
+  const origin = rings[0]?.[0];
   if (!origin || !(marginM > 0)) return [];
   const [mx, my] = metresPerDegree(origin[1]);
+  const outlines = rings.map((ring) => ring.map(([lon, lat]): LonLat => [beside(lon, origin[0]), lat]));
   const edges = outlines.flatMap((ring) =>
     ring.slice(1).map((b, i): Edge => {
       const a = ring[i]!;

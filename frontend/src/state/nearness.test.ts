@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { LonLat } from "../wire/beliefFrame";
-import { destination } from "./geometry";
+import { beside, destination } from "./geometry";
 import { shareWithin } from "./nearness";
 
 const sw: LonLat = [7.1, 50.7];
@@ -46,4 +46,12 @@ it("is nothing of no belief", () => {
       50,
     ),
   ).toBe(0);
+});
+
+it("counts a belief across the antimeridian as any other", () => {
+  const across = (lon: number) => beside(lon - sw[0] + 179.9995, 0);
+  const whole = square(() => 1);
+  const there = { ...whole, bounds: whole.bounds.map(([lon, lat]): LonLat => [across(lon), lat]) as typeof whole.bounds };
+  expect(there.bounds[0][0]).toBeGreaterThan(there.bounds[1][0]);
+  expect(shareWithin(there, [across(centre[0]), centre[1]], 20)).toBeCloseTo(shareWithin(whole, centre, 20), 6);
 });

@@ -1,11 +1,11 @@
 // How likely the emitter is near a place: the belief's mass in a circle.
 import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
-import { distanceM } from "./geometry";
+import { distanceM, together } from "./geometry";
 
 /** Share of the belief, 0..1, not farther than `radiusM` from `place`; a cell on the circle counts in part. */
 export function shareWithin(frame: Pick<BeliefFrame, "nx" | "ny" | "bounds" | "cells">, place: LonLat, radiusM: number): number {
   const { nx, ny, cells } = frame;
-  const [sw, se, ne, nw] = frame.bounds;
+  const [sw, se, ne, nw] = together(frame.bounds) as BeliefFrame["bounds"];
   const cellM = distanceM(sw, se) / nx;
   let all = 0;
   let near = 0;
