@@ -155,6 +155,22 @@ it.each(["hold", "abort"] as const)("%s is not given under the session that foll
   expect(source.done).toEqual([]);
 });
 
+it("ends where somebody else has entered meanwhile, and not where the same person is heard of again", async () => {
+  const enters = (person_id: string) => (session.value = { mode: "people", person: { person_id } } as never);
+  enters("ada");
+  begin({ hold: ["lost"], return: ["lost"] });
+  void sendUrgent(M, "hold");
+  await pass(100);
+  enters("ada");
+  await pass();
+  void sendUrgent(M, "return");
+  await pass(100);
+  enters("bob");
+  await pass();
+  session.value = null;
+  expect(source.done).toEqual(["hold"]);
+});
+
 it.each([408, 429, 503])("goes on after a %d, which is no refusal", async (status) => {
   begin({ hold: [status] });
   void sendUrgent(M, "hold");

@@ -1,12 +1,12 @@
 // Abort, hold, return and landing: sent at once, and again under the same id until the server answers. Every press has a
 // number: the server carries out none that reaches it after a later one of this page, so that the last one given counts.
-import { effect, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { type MessageKey, t } from "../i18n";
 import { newCommandId } from "../sources/api";
 import { isRefusal, localProblem, RequestFailed, refusal } from "../sources/problem";
 import { live, serverNowMs, source } from "../state/connection";
 import type { Flown } from "../state/flying";
-import { entered } from "../state/session";
+import { entered, me } from "../state/session";
 import { TAP_MS } from "../state/tap";
 import type { Problem, Recorded } from "../wire";
 import { asProblem, report, steered } from "./send";
@@ -62,8 +62,10 @@ const underWay = new Set<Order>();
 addEventListener("beforeunload", (event) => underWay.size > 0 && event.preventDefault());
 
 /** Whoever enters next has given no order. */
+const giver = computed(() => (entered.value === "out" ? "" : me.value?.person_id));
 effect(() => {
-  if (entered.value === "out") for (const order of underWay) end(order);
+  void giver.value;
+  for (const order of underWay) end(order);
 });
 
 const toOf = ({ id, craftId }: Flown): string => id ?? craftId;
@@ -87,7 +89,7 @@ function newPress(to: string): number {
 
 function show(own: Order, state: UrgentState | null): void {
   if (!state && (own.shown === null || urgent.peek()[own.kind] !== own.shown)) return;
-  const { [own.kind]: _old, ...others } = urgent.value;
+  const { [own.kind]: _old, ...others } = urgent.peek();
   urgent.value = state ? { ...others, [own.kind]: state } : others;
   own.shown = state;
 }
