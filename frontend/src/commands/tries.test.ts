@@ -10,6 +10,7 @@ import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import { session } from "../state/session";
 import type { Command, Recorded } from "../wire";
+import { someStatus } from "../wire/examples";
 import { type Answer, type Fate, inTimeOfItsOwn, LossyServer, later, pass } from "./lossyServer";
 import { problems } from "./send";
 import { sendUrgent, urgent } from "./urgent";
@@ -25,11 +26,17 @@ const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
 
 inTimeOfItsOwn();
 
+const inTime = (ms: number) => new Date(Date.now() + ms).toISOString();
 /** An entry of the journal, inMs from now. */
-const told = (inMs: number, event: object) => ({ seq: 1, at_utc: new Date(Date.now() + inMs).toISOString(), event }) as unknown as Recorded;
+const told = (inMs: number, event: object) => ({ seq: 1, at_utc: inTime(inMs), event }) as unknown as Recorded;
 const theirs = { kind: "command_accepted", command: "return", command_id: "theirs" };
 const byItself = { kind: "return_ordered", by: null, craft_id: "c" };
 const M_SHOWN = { ...emptyLive, mission: { ...emptyLive.mission, missionId: "m" } };
+/** What the page is told now of the server's time, and entries of its journal. */
+function hear(statusInMs: number, ...events: Recorded[]): void {
+  const status = { value: someStatus({ at_utc: inTime(statusInMs) }), atMs: performance.now() };
+  live.value = { ...M_SHOWN, beganMs: live.value.beganMs, status, events };
+}
 
 describe("a hold pressed again", () => {
   it("while the answer to the first hangs goes out", async () => {
@@ -118,7 +125,7 @@ it.each([
   live.value = M_SHOWN;
   void sendUrgent(M, "hold");
   await pass(100);
-  live.value = { ...M_SHOWN, events: [told(inMs, event)] };
+  hear(0, told(inMs, event));
   await pass();
   expect(sent("hold")).toHaveLength(tries);
   expect(urgent.value).toEqual({});
@@ -127,11 +134,49 @@ it.each([
   expect(gaveUp?.title).toBe(tries === 1 ? t("bar.hold") : undefined);
 });
 
+it.each([3_600_000, -3_600_000])("knows what was ordered since by a server's clock that is %d ms ahead", async (ms) => {
+  for (const [inMs, done] of [
+    [3000, []],
+    [-3000, ["hold"]],
+  ] as const) {
+    begin({ hold: ["lost"] });
+    void sendUrgent(M, "hold");
+    await pass(100);
+    hear(ms, told(ms + inMs, theirs));
+    await pass();
+    expect(source.done).toEqual(done);
+  }
+});
+
+it("what was ordered while the machine slept, before the press, is heard after it and ends nothing", async () => {
+  begin({ hold: ["lost"] });
+  hear(0);
+  vi.setSystemTime(Date.now() + 600_000);
+  void sendUrgent(M, "hold");
+  await pass(100);
+  hear(0, told(-300_000, theirs));
+  await pass();
+  expect(source.done).toEqual(["hold"]);
+});
+
+it("the time that an example told says nothing of the mission that is shown instead", async () => {
+  begin({ hold: ["lost", "lost"] });
+  hear(-86_400_000);
+  void sendUrgent(M, "hold");
+  await pass(100);
+  hear(-86_400_000);
+  await pass(100);
+  open(source);
+  live.value = { ...M_SHOWN, ...live.value, mission: M_SHOWN.mission, events: [told(-300_000, theirs)] };
+  await pass();
+  expect(source.done).toEqual(["hold"]);
+});
+
 it("a return given on another page goes out no more over what is heard later", async () => {
   begin({ return: ["lost"] });
   void sendUrgent(M, "return");
   await pass(100);
-  live.value = { ...M_SHOWN, events: [told(3000, { ...theirs, command: "hold" })] };
+  hear(0, told(3000, { ...theirs, command: "hold" }));
   await pass();
   expect(source.done).toEqual([]);
 });

@@ -4,7 +4,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { type MessageKey, t } from "../i18n";
 import { newCommandId } from "../sources/api";
 import { isRefusal, localProblem, RequestFailed, refusal } from "../sources/problem";
-import { live, serverNowMs, source } from "../state/connection";
+import { live, source } from "../state/connection";
 import type { Flown } from "../state/flying";
 import { entered, me } from "../state/session";
 import { TAP_MS } from "../state/tap";
@@ -44,8 +44,6 @@ interface Order {
   commandId: string;
   /** By both clocks: one is set, the other stands still while the machine sleeps. */
   pressedMs: readonly [number, number];
-  /** By the server's clock. */
-  servedMs: number;
   shown: UrgentState | null;
   /** It is tried no more: something newer counts. */
   isEnded?: boolean;
@@ -71,7 +69,7 @@ effect(() => {
 const toOf = ({ id, craftId }: Flown): string => id ?? craftId;
 const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to && !order.isEnded);
 const clocks = (): readonly [number, number] => [Date.now(), performance.now()];
-const leftMs = ({ pressedMs }: Order): number => GIVE_UP_MS - Math.max(...clocks().map((now, clock) => now - pressedMs[clock]!));
+const sinceMs = ({ pressedMs }: Order): number => Math.max(...clocks().map((now, clock) => now - pressedMs[clock]!));
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -109,11 +107,19 @@ function isSteering({ event }: Recorded, craftId: string): boolean {
   return event.kind === "command_accepted" && STEERING.includes(event.command) && !ownIds.has(event.command_id);
 }
 
+/** When it was pressed, by the server's clock as heard since: what was known of that clock before a sleep is old. */
+function servedMs(order: Order): number {
+  const { status, beganMs, hello } = live.peek();
+  if (!status || status.atMs <= Math.max(beganMs, order.pressedMs[1])) return Infinity;
+  return Date.parse(status.value.at_utc) + (performance.now() - status.atMs - sinceMs(order)) * (hello?.time_factor ?? 1);
+}
+
 /** Has somebody else, or the mission by itself, ordered something since? As far as the journal is heard here. */
-function isOvertaken({ flown, servedMs }: Order): boolean {
+function isOvertaken(order: Order): boolean {
   const { mission, events } = live.peek();
-  const isSince = ({ at_utc }: Recorded) => Date.parse(at_utc) > servedMs + CLOCKS_MS;
-  return mission.missionId === flown.id && events.some((told) => isSince(told) && isSteering(told, flown.craftId));
+  const { id, craftId } = order.flown;
+  const afterMs = servedMs(order) + CLOCKS_MS;
+  return mission.missionId === id && events.some((told) => Date.parse(told.at_utc) > afterMs && isSteering(told, craftId));
 }
 
 let toldPress = 0;
@@ -174,13 +180,12 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
   const { id, craftId } = flown;
   const to = toOf(flown);
   const press = newPress(to);
-  const servedMs = serverNowMs.peek();
-  const own: Order = { flown, kind, to, press, commandId: newId(), pressedMs: clocks(), servedMs, shown: null };
+  const own: Order = { flown, kind, to, press, commandId: newId(), pressedMs: clocks(), shown: null };
   const giveUp = (why: MessageKey) => report("bar", localProblem(t(`bar.${kind}` satisfies MessageKey), t(why)));
   tell(press, null);
   underWay.add(own);
   for (let tries = 0; !own.isEnded; ) {
-    const left = leftMs(own);
+    const left = GIVE_UP_MS - sinceMs(own);
     if (left <= 0) {
       giveUp("bar.unanswered");
       break;

@@ -93,8 +93,9 @@ export function connect(next: Source): void {
   source.peek()?.stop();
   pending = [];
   const { telemetry, status } = live.peek();
+  const beganMs = performance.now();
   batch(() => {
-    live.value = { ...emptyLive, telemetry, status, link: { ...emptyLive.link, sinceMs: performance.now() } };
+    live.value = { ...emptyLive, beganMs, telemetry, status, link: { ...emptyLive.link, sinceMs: beganMs } };
     source.value = next;
   });
   next.start((message) => {

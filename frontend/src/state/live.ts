@@ -12,6 +12,8 @@ export interface Received<T> {
 }
 
 export interface LiveState {
+  /** When this source began to speak. What is older was told by the one before. */
+  beganMs: number;
   hello: Hello | null;
   link: { state: "connecting" | "open" | "closed"; attempt: number; sinceMs: number };
   lastMessageMs: number | null;
@@ -30,6 +32,7 @@ export interface LiveState {
 }
 
 export const emptyLive: LiveState = {
+  beganMs: 0,
   hello: null,
   link: { state: "connecting", attempt: 0, sinceMs: 0 },
   lastMessageMs: null,
