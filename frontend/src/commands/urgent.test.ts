@@ -142,7 +142,8 @@ it("goes on when a newer one is refused", async () => {
   void sendUrgent(M, "return");
   await vi.advanceTimersByTimeAsync(1_000);
   expect(kinds()).toEqual(["hold", "return", "hold"]);
-  expect(urgent.value).toEqual({ hold: { stage: "accepted", count: 1 } });
+  expect(urgent.value).toMatchObject({ hold: { stage: "accepted", count: 1 } });
+  expect(Object.keys(urgent.value)).toEqual(["hold"]);
 });
 
 it("stays behind once the search was resumed, however late an answer comes", async () => {

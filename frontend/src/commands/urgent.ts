@@ -19,6 +19,7 @@ type InNoMission = Exclude<Urgent, "abort">;
 export interface UrgentState {
   stage: "sending" | "retrying" | "accepted";
   count: number;
+  acceptedMs?: number;
 }
 
 /** One entry a kind: a hold never takes the place of an abort that is still on its way. */
@@ -212,7 +213,7 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
       tell(press, reply.accepted ? null : refusal(reply.reason));
       if (!reply.accepted) break;
       underWay.delete(own);
-      show(own, { stage: "accepted", count: tries - 1 });
+      show(own, { stage: "accepted", count: tries - 1, acceptedMs: performance.now() });
       await pause(SHOWN_MS);
       break;
     } catch (error) {

@@ -302,14 +302,14 @@ function Words() {
 
 /** What the vehicle makes of the order that was given last: done only when its telemetry says so. */
 function OrderNote() {
-  const craft = live.value.status?.value.crafts.find(({ craft_id }) => craft_id === flying.value?.craftId);
-  const order = craft?.order ?? null;
-  if (order === null) return null;
+  const { status } = live.value;
+  const order = status?.value.crafts.find(({ craft_id }) => craft_id === flying.value?.craftId)?.order;
+  if (!order) return null;
   const command = t(`bar.${order.order}` satisfies MessageKey);
   const way = t(`bar.${order.way}` satisfies MessageKey);
   const reason = order.because ? reasonText(order.because) : "";
-  const isAccepted = urgent.value[order.order]?.stage === "accepted"; // "done" may be of an earlier one
-  if (order.stage === "done" && order.because === null) return isAccepted ? <span>{t("bar.order.done", { command })}</span> : null;
+  const isNews = status!.atMs > (urgent.value[order.order]?.acceptedMs ?? Infinity); // "done" may be of an earlier one
+  if (order.stage === "done" && order.because === null) return isNews ? <span>{t("bar.order.done", { command })}</span> : null;
   const key = order.stage === "done" ? "bar.order.instead" : reason ? "bar.order.refused" : "bar.order.tried";
   return (
     <span class={reason ? "not-done" : ""} data-testid="order-note" data-stage={order.stage} role={reason ? "alert" : "status"}>
