@@ -10,7 +10,7 @@ from backend.craft.effects import CancelTimer, CancelWork, StartTimer
 from backend.craft.inputs import BatteryLow
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.craft.step import CraftStep, alert, bring_down, clear_alerts, go_home
-from backend.events import BatteryCountdownStarted, BatteryCountdownStopped, ReturnOrdered
+from backend.events import BatteryCountdownStarted, BatteryCountdownStopped, LandOrdered, ReturnOrdered
 from backend.reasons import Reason
 from backend.reasons.refusals import NoCountdown
 from backend.reasons.refused import Refused
@@ -76,6 +76,7 @@ def _return(step: CraftStep, because: Reason) -> None:
 
 def _land_here(step: CraftStep, because: Reason) -> None:
     step.do(CancelWork())
+    step.record(LandOrdered(craft_id=step.craft.craft_id, by=None, reason=because))
     step.go("landing", because)
     step.do(StartTimer("landing", LANDING_PATIENCE_S))
     bring_down(step, "land")

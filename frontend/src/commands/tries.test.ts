@@ -118,6 +118,7 @@ it.each([-3_600_000, 120_000])("a clock that is set by %d ms tries no longer tha
 it.each([
   ["what somebody else has ordered since", 3000, theirs, 1],
   ["what the mission has ordered by itself since", 3000, byItself, 1],
+  ["the landing of an empty battery since", 3000, { ...byItself, kind: "land_ordered" }, 1],
   ["what was ordered before, and is heard only now", -3000, theirs, 3],
   ["what another craft does by itself", 3000, { ...byItself, craft_id: "d" }, 3],
 ])("a hold that is lost, and %s", async (_what, inMs, event, tries) => {

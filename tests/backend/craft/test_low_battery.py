@@ -9,7 +9,7 @@ from facts import BATTERY_VETO, FAILSAFE, OURS
 from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.low_battery import COUNTDOWN_S
-from backend.events import BatteryCountdownStarted, BatteryCountdownStopped, ReturnOrdered, ServerRestarted
+from backend.events import BatteryCountdownStarted, BatteryCountdownStopped, LandOrdered, ReturnOrdered, ServerRestarted
 from backend.reasons.refusals import NoCountdown
 
 LOW, LAST, LAND = (inputs.BatteryLow(BATTERY_VETO, stage) for stage in ("return", "last", "land"))
@@ -88,3 +88,5 @@ def test_on_the_way_home_a_battery_that_does_not_reach_it_lands_here() -> None:
     assert moves(walk.give(LAST)) == []
     assert moves(walk.give(LAND)) == [effects.Land()]
     assert walk.craft.phase == "landing"
+    told = walk.of_kind(LandOrdered)[-1]
+    assert (told.by, told.reason) == (None, BATTERY_VETO), "a page tries no older order over it"
