@@ -24,14 +24,13 @@ export function upload<Answer>(
       };
       request.onerror = request.onabort = () => reject(unreachable(t("problem.upload")));
       request.onload = () => {
-        if (request.status < 300) resolve(JSON.parse(request.responseText) as Answer);
-        else {
-          const answer = new Response(request.responseText, {
-            status: request.status,
-            headers: { "content-type": request.getResponseHeader("content-type") ?? "" },
-          });
-          void problemOf(answer).then(reject, reject);
-        }
+        const answer = new Response(request.responseText || null, {
+          status: request.status,
+          headers: { "content-type": request.getResponseHeader("content-type") ?? "" },
+        });
+        if (answer.ok)
+          answer.json().then(resolve, () => reject(unreachable(t("problem.upload")))); // some proxy's own page
+        else void problemOf(answer).then(reject, reject);
       };
       request.send(file);
     });
