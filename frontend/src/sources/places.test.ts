@@ -1,7 +1,7 @@
 import { beforeEach, expect, it, vi } from "vitest";
 import * as api from "./api";
 import { inTilePlace, overlay } from "./mapsApi";
-import { places } from "./places";
+import { inPlace, places } from "./places";
 
 const turn = () => new Promise((resolve) => setTimeout(resolve));
 
@@ -51,6 +51,38 @@ it("a waiting one begins when another has ended, well or not, and never when it 
   await third;
   void work("fourth");
   expect(begun).toEqual(["first", "third", "fourth"]);
+});
+
+it("what is no longer wanted by the time it is asked for takes no place, be one free or not", async () => {
+  const inPlace = places(1);
+  const work = vi.fn(() => Promise.resolve());
+  const gone = AbortSignal.abort(new Error("gone"));
+  await expect(inPlace(work, gone)).rejects.toThrow("gone");
+  let end = () => {};
+  const first = inPlace(() => new Promise<void>((resolve) => (end = resolve)));
+  await expect(inPlace(work, gone)).rejects.toThrow("gone");
+  end();
+  await first;
+  expect(work).not.toHaveBeenCalled();
+  await inPlace(work);
+  expect(work).toHaveBeenCalledOnce();
+});
+
+it("a tile that is let go in the instant in which its place comes free is not loaded, and leaves the place", async () => {
+  const ends: (() => void)[] = [];
+  const others = [1, 2, 3, 4].map(() => inPlace(() => new Promise<void>((resolve) => ends.push(resolve))));
+  const load = vi.fn(() => new Promise<never>(() => undefined));
+  const moves = new AbortController();
+  const tile = inTilePlace(load, moves.signal).catch(() => "moved on");
+  ends[0]!();
+  void Promise.resolve().then(() => moves.abort());
+  expect(await Promise.race([tile, turn()])).toBe("moved on");
+  expect(load).not.toHaveBeenCalled();
+  const next = vi.fn(() => Promise.resolve());
+  void inPlace(next);
+  expect(next).toHaveBeenCalledOnce();
+  for (const end of ends) end();
+  await Promise.all(others);
 });
 
 it("an order leaves at once, however much waits for slow answers", async () => {
