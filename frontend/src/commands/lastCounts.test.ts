@@ -24,8 +24,8 @@ const sent = (kind: string) => source.sent.filter((s) => s.kind === kind);
 
 inTimeOfItsOwn();
 
-function withTwoCrafts(): void {
-  const crafts = ["c", "d"].map((craft_id) => ({ craft_id, mission_id: "m" }));
+function withCrafts(...ids: string[]): void {
+  const crafts = ids.map((craft_id) => ({ craft_id, mission_id: "m" }));
   live.value = { ...emptyLive, status: { value: { crafts }, atMs: 0 } as unknown as typeof emptyLive.status };
 }
 
@@ -111,7 +111,7 @@ describe("a hold, then a resume", () => {
 
   it("ends no order that the mission's other craft may still need", async () => {
     begin({ hold: ["lost"] });
-    withTwoCrafts();
+    withCrafts("c", "d");
     void sendUrgent(M, "hold");
     await pass(100);
     void resume(M);
@@ -119,9 +119,26 @@ describe("a hold, then a resume", () => {
     expect(source.done).toEqual(["resume", "hold"]);
   });
 
+  it("ends none either where no status has told how many craft there are, and ends it where there is one", async () => {
+    begin({ hold: ["lost"] });
+    void sendUrgent(M, "hold");
+    await pass(100);
+    void resume(M);
+    withCrafts("c", "d");
+    await pass();
+    expect(source.done).toEqual(["resume", "hold"]);
+    begin({ hold: ["lost"] });
+    withCrafts("c");
+    void sendUrgent(M, "hold");
+    await pass(100);
+    void resume(M);
+    await pass();
+    expect(sent("hold")).toHaveLength(1);
+  });
+
   it("is not undone by what was given before the hold, with several crafts either", async () => {
     begin({ return: ["late, reply lost"] });
-    withTwoCrafts();
+    withCrafts("c", "d");
     void sendUrgent(M, "return");
     await pass(50);
     void sendUrgent(M, "hold");
