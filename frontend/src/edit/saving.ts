@@ -33,6 +33,9 @@ export async function draftOnce(key: string, spec: MissionSpec): Promise<Mission
     return await api.draftMission(spec, id);
   } catch (error) {
     if (!isRefusal(error) || error.problem.reason?.code !== "drafted_before") throw error;
-    return api.mission(id);
+    const before = await api.mission(id);
+    if (before.editable && before.deleted_at_utc === null) return before;
+    forgetSaving(key); // flown or deleted since: the same again is another mission
+    return draftOnce(key, spec);
   }
 }
