@@ -272,7 +272,7 @@ class BundleFileWrong:
     )
 
 
-FactFault = Literal["place", "region", "spread", "unknown_bearing", "not_started", "name", "id"]
+FactFault = Literal["place", "region", "spread", "unknown_bearing", "bearing_twice", "not_started", "name", "id"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,6 +286,7 @@ class BundleFactWrong:
         "Event {seq} in the bundle’s mission.json {fault?place=tells an estimate that is no place on Earth"
         "|region=tells a 95 % region that is no area|spread=tells an uncertainty or a number that cannot be"
         "|unknown_bearing=leaves out, or takes in again, a bearing that there is not"
+        "|bearing_twice=tells a bearing whose id another one has"
         "|not_started=tells of a craft that had not started"
         "|name=gives a name whose characters turn the direction of writing"
         "|id=names a sweep with characters that no id has}.",

@@ -62,6 +62,8 @@ def _take(before: _Before, fact: Event) -> None:
 
 def _fault(fact: Event, before: _Before) -> FactFault | None:
     match fact:
+        case BearingMeasured(bearing_id=told_id) if told_id in before.told:
+            return "bearing_twice"
         case BearingMeasured(sweep_id=sweep_id, sigma_deg=sigma_deg):
             return "spread" if sigma_deg <= 0.0 else _ids([] if sweep_id is None else [sweep_id])
         case SweepRejected(sweep_id=sweep_id):

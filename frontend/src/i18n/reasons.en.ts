@@ -916,7 +916,7 @@ export const reasonsEn: ReasonTable = {
     "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
   ],
   bundle_fact_wrong: [
-    "Event {seq} in the bundle’s mission.json {fault?place=tells an estimate that is no place on Earth|region=tells a 95 % region that is no area|spread=tells an uncertainty or a number that cannot be|unknown_bearing=leaves out, or takes in again, a bearing that there is not|not_started=tells of a craft that had not started|name=gives a name whose characters turn the direction of writing|id=names a sweep with characters that no id has}.",
+    "Event {seq} in the bundle’s mission.json {fault?place=tells an estimate that is no place on Earth|region=tells a 95 % region that is no area|spread=tells an uncertainty or a number that cannot be|unknown_bearing=leaves out, or takes in again, a bearing that there is not|bearing_twice=tells a bearing whose id another one has|not_started=tells of a craft that had not started|name=gives a name whose characters turn the direction of writing|id=names a sweep with characters that no id has}.",
     "Nothing was brought in. Choose the zip file that “All of it” saves under “Take away”, unchanged.",
   ],
   upload_broke_off: ["The upload broke off; nothing was kept.", "Upload the file again."],

@@ -2469,7 +2469,7 @@ export interface components {
         /** @description seq: of the fact in the mission of a bundle that no Crossfix recorded; the whole bundle is not brought in. */
         BundleFactWrong: {
             /** @enum {string} */
-            fault: "place" | "region" | "spread" | "unknown_bearing" | "not_started" | "name" | "id";
+            fault: "place" | "region" | "spread" | "unknown_bearing" | "bearing_twice" | "not_started" | "name" | "id";
             seq: number;
             /**
              * @description discriminator enum property added by openapi-typescript

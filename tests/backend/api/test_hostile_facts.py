@@ -87,6 +87,7 @@ MORE = len(FLOWN) + 1
         (with_fact(seq_of("bearing_measured"), sweep_id='=HYPERLINK("x")'), "id", seq_of("bearing_measured")),
         (with_more(excluded("nope")), "unknown_bearing", MORE),
         (with_more(excluded("nope", "bearing_included")), "unknown_bearing", MORE),
+        (with_more(BEARING), "bearing_twice", MORE),
         (with_more(GHOST), "not_started", MORE),
         (with_more(labelled("\u202egpj.exe")), "name", MORE),
         (with_more(labelled("fox", "\u202etag")), "name", MORE),

@@ -58,7 +58,7 @@ export const server = {
     "Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert, unverändert.",
   ],
   bundle_fact_wrong: [
-    "Ereignis {seq} in der mission.json des Bündels {fault?place=nennt eine Schätzung, die kein Ort auf der Erde ist|region=nennt ein 95-%-Gebiet, das keine Fläche ist|spread=nennt eine Unsicherheit oder Zahl, die es nicht geben kann|unknown_bearing=lässt eine Peilung aus oder zählt sie wieder mit, die es nicht gibt|not_started=handelt von einem Fluggerät, das nicht gestartet war|name=gibt einen Namen mit Zeichen, die die Schreibrichtung umkehren|id=nennt eine Drehung mit Zeichen, die keine Kennung hat}.",
+    "Ereignis {seq} in der mission.json des Bündels {fault?place=nennt eine Schätzung, die kein Ort auf der Erde ist|region=nennt ein 95-%-Gebiet, das keine Fläche ist|spread=nennt eine Unsicherheit oder Zahl, die es nicht geben kann|unknown_bearing=lässt eine Peilung aus oder zählt sie wieder mit, die es nicht gibt|bearing_twice=nennt eine Peilung mit der Kennung einer anderen|not_started=handelt von einem Fluggerät, das nicht gestartet war|name=gibt einen Namen mit Zeichen, die die Schreibrichtung umkehren|id=nennt eine Drehung mit Zeichen, die keine Kennung hat}.",
     "Nichts wurde übernommen. Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert, unverändert.",
   ],
   upload_broke_off: ["Das Hochladen brach ab; nichts wurde behalten.", "Die Datei noch einmal hochladen."],
