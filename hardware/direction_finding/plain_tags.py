@@ -55,18 +55,22 @@ def as_asked(
     tag: str, names: tuple[str, ...], turns: Sequence[Sequence[HeardAt]], tags: Tags | None
 ) -> tuple[Tags | None, str]:
     """Whose readings they are where that tag is asked for, by another column if that one names it, too; and its name.
-    Several animals of one species are not one of them."""
-    name = "" if tags is None else meant(tag, {*tags.values()} - {""})
+    Several animals of one species are not one of them. As it is written it counts before any other spelling."""
+    told = set[str]() if tags is None else {*tags.values()} - {""}
+    found = namings(names, [one.row for turn in turns for one in turn])
+    columns = [one for one in found if not (tags is None and one.frequencies)]
+    written = [one for one in columns if tag in one.names.values()]
+    name = "" if written and tag not in told else meant(tag, told)
     if name:
         return tags, name
-    for one in namings(names, [one.row for turn in turns for one in turn]):
+    for one in written or columns:
         name = meant(tag, {*one.names.values()}) or near(tag, names[one.column], one.hertz)
-        if not name or (tags is None and one.frequencies):
+        if not name:
             continue
-        found = _tags(one, turns)
-        others = set[str]() if tags is None else {tags[line] for line, told in found.items() if told == name} - {""}
+        by_line = _tags(one, turns)
+        others = set[str]() if tags is None else {tags[line] for line, own in by_line.items() if own == name} - {""}
         if len(others) < 2 or not plain_name(names[one.column]).startswith("animal"):
-            return found, name
+            return by_line, name
     return tags, tag
 
 

@@ -102,11 +102,13 @@ def tags_in(names: tuple[str, ...], rows: Sequence[Row]) -> Naming | None:
 
 
 def meant(asked: str, names: Collection[str]) -> str:
-    """Which of the names is asked for, in other letters or digits, too (150.100 is 150.1); empty: none."""
+    """Which of the names is asked for, else the only one that is the same in other letters or digits (150.100 is
+    150.1); empty: none, or several."""
     if asked in names:
         return asked
     wanted = _alike(asked), _digits(asked)
-    return next((name for name in sorted(names) if _alike(name) == wanted[0] or _digits(name) == wanted[1] != ""), "")
+    fitting = {name for name in names if _alike(name) == wanted[0] or _digits(name) == wanted[1] != ""}
+    return fitting.pop() if len(fitting) == 1 else ""
 
 
 def near(asked: str, column: str, hertz: Mapping[str, float]) -> str:

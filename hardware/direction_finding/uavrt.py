@@ -137,7 +137,9 @@ def read_rotations(table: Table, tag: str | None = None) -> tuple[list[tuple[Swe
         rotations = [_Rotation(table.rows[0].line, None, None, outside)]
     elif outside:
         remarks.append(PulsesOutsideRotations(file, len(outside)))
-    sweeps = [_sweep(table, rotation, tag, remarks) for rotation in rotations]
+    heard = {pulse.tag for rotation in rotations for pulse in rotation.pulses}
+    asked = None if tag is None else meant(tag, heard) or tag
+    sweeps = [_sweep(table, rotation, asked, remarks) for rotation in rotations]
     found = [sweep for sweep in sweeps if sweep is not None]
     if not found:
         unheard = next((remark for remark in remarks if isinstance(remark, TagNotHeard)), None)
@@ -250,7 +252,7 @@ def _sweep(
     if not heard:
         remarks.append(RotationIrregular(file, line, "empty"))
         return None
-    wanted = heard.most_common(1)[0][0] if tag is None else meant(tag, heard) or tag
+    wanted = heard.most_common(1)[0][0] if tag is None else tag
     if wanted not in heard:
         remarks.append(TagNotHeard(file, line, wanted, some_of(heard)))
         return None

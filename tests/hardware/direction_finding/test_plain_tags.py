@@ -176,6 +176,8 @@ def test_a_turn_that_names_nobody_is_not_that_of_a_tag_that_is_asked_for(tmp_pat
         ("frequency_mhz", "150.1004", "150.2", "150.1 MHz", "150.1004"),
         ("collar", "07", "12", "7", "07"),
         ("tag,frequency", "7,150.1", "7,150.2", "7", "7"),
+        ("tag,animal", "1.1,1.10", "2.1,hare", "1.10", "1.10"),
+        ("tag", "1.1", "1.10", "1.10", "1.10"),
     ],
 )
 def test_a_tag_may_be_asked_for_as_it_is_written_or_by_another_column(
@@ -191,7 +193,10 @@ def test_other_letters_and_zeros_name_no_other_animal(tmp_path: Path, most: str,
     assert heard(read(tmp_path, "animal", rows)) == [(most, 36)]
 
 
-@pytest.mark.parametrize(("asked", "cells"), [("12", ("1_2", "8")), ("0", ("00x", "8")), ("lynx", ("150.1", "150.2"))])
+@pytest.mark.parametrize(
+    ("asked", "cells"),
+    [("12", ("1_2", "8")), ("0", ("00x", "8")), ("lynx", ("150.1", "150.2")), ("1.100", ("1.1", "1.10"))],
+)
 def test_a_tag_that_is_asked_for_is_no_other_and_not_several(
     tmp_path: Path, asked: str, cells: tuple[str, str]
 ) -> None:

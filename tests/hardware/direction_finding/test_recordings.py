@@ -37,7 +37,7 @@ def pulse(
     yaw_deg: float,
     signal_db: float,
     psd: float = 1e-9,
-    tag: int = 4,
+    tag: int | str = 4,
     columns: int = 21,
     frequency: int = 148_520_230,
     offset: float = 0.0,
@@ -124,6 +124,14 @@ def test_several_rotations_and_tags_give_one_sweep_each_of_the_commonest_tag(tmp
     assert [recorded.sweep.tag for recorded in read_recording(path, tag="2").sweeps] == ["2"]
     with refusing(TagNotHeard(str(path), 1, "77", ("2", "4")), RecordingError):
         read_recording(path, tag="77")
+
+
+def test_a_tag_of_another_rotation_is_not_looked_for_by_another_spelling(tmp_path: Path) -> None:
+    path = write(tmp_path, rotation(tag="1.1") + rotation(tag="1.10"))
+    assert [recorded.sweep.tag for recorded in read_recording(path, tag="1.10").sweeps] == ["1.10"]
+    assert [recorded.sweep.tag for recorded in read_recording(path, tag="1.1").sweeps] == ["1.1"]
+    alone = write(tmp_path, rotation(tag="1.1"))
+    assert [recorded.sweep.tag for recorded in read_recording(alone, tag="1.10").sweeps] == ["1.1"]
 
 
 @pytest.mark.parametrize(
