@@ -15,6 +15,7 @@ Field = Literal[
     "core:datetime",
     "core:geolocation",
     "core:dataset",
+    "core:num_channels",
     "antenna:azimuth_angle",
 ]
 STATE_IT = (
@@ -23,6 +24,7 @@ STATE_IT = (
     "core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as "
     "seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|"
     "core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|"
+    "core:num_channels=State of how many channels the samples are, one at least, or leave it out|"
     "antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table "
     "of time and heading beside the recording}."
 )
@@ -165,6 +167,20 @@ class HeadingsOfOtherLength:
 
 
 @dataclass(frozen=True, slots=True)
+class FirstChannelUsed:
+    """channels: how many the samples of the file are interleaved from."""
+
+    file: str
+    channels: int
+    code: Literal["first_channel_used"] = "first_channel_used"
+
+    english: ClassVar[Words] = Words(
+        "The recording {file} holds {channels} channels; the first is used.",
+        "To use another one, write its samples to a recording of their own.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class StrongestUsed:
     file: str
     frequency_hz: float
@@ -224,6 +240,7 @@ IqRecordingReason = (
     | NoPulseAt
     | HeadingsApart
     | HeadingsOfOtherLength
+    | FirstChannelUsed
     | StrongestUsed
     | ReadingsWithoutHeading
     | NotIq

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,10 +12,10 @@ from numpy.typing import NDArray
 from hardware.direction_finding.recordings import RecordedSweep, Recording, read_recording
 from hardware.direction_finding.sweep import SweepError, assemble_sweep
 from hardware.direction_finding.table_file import RecordingError
-from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.readings import Place, PowerSample
 from hardware.reasons.channels import SampleRateTooLow
 from hardware.reasons.iq_recording import (
+    FirstChannelUsed,
     NoPulseAt,
     NoSignalFound,
     NotIq,
@@ -74,6 +73,8 @@ def read_rotation(path: Path | str, tag: str | None = None, iq: IqReading | None
     recorded = load_sigmf(path)
     _refuse_unusable_samples(recorded)
     remarks: list[RecordingReason] = []
+    if recorded.channels > 1:
+        remarks.append(FirstChannelUsed(str(path), recorded.channels))
     frequency_hz = iq.frequency_hz
     if frequency_hz is None:
         frequency_hz = _strongest_hz(recorded)
@@ -147,7 +148,8 @@ def mean_spectrum(samples: Samples, window: NDArray[np.float64]) -> NDArray[np.f
 
 def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> list[PowerSample]:
     meter = _meter(recorded, frequency_hz, pulses)
-    heard = [sample for block in _blocks(recorded) for sample in meter.feed(block) if sample.detected]
+    size = max(int(BLOCK_S * recorded.sample_rate_hz), 1)
+    heard = [sample for block in recorded.blocks(size) for sample in meter.feed(block) if sample.detected]
     if pulses is not None:
         if not heard:
             raise RecordingError(NoPulseAt(str(recorded.path), frequency_hz))
@@ -174,16 +176,3 @@ def _meter(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting |
         return ToneMeter(frequency_hz, centre, rate, setting=replace(plain, bandwidth_hz=width_hz, search_hz=reach))
     except SpectrumError as error:
         raise RecordingError(RecordingUnusable(str(recorded.path), error.reason)) from error
-
-
-def _blocks(recorded: SigmfRecording) -> Iterator[IqBlock]:
-    """Capture by capture at its own time; that time went by between two of them counts as loss."""
-    rate = recorded.sample_rate_hz
-    size = max(int(BLOCK_S * rate), 1)
-    firsts = [segment.first for segment in recorded.segments]
-    for begin, end in zip(firsts, [*firsts[1:], recorded.samples.size], strict=True):
-        gap_s = recorded.time_of(begin) - (recorded.time_of(begin - 1) + 1.0 / rate) if begin > 0 else 0.0
-        lost = 1 if abs(gap_s) > 1.0 / rate else 0
-        for first in range(begin, end, size):
-            part = recorded.samples.part(first, min(first + size, end))
-            yield IqBlock(recorded.time_of(first), part, clipped_at_full_scale(part), lost if first == begin else 0)

@@ -8,8 +8,6 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-import numpy as np
-
 from hardware.direction_finding.table_file import RecordingError, Row, column_of, read_table
 from hardware.readings import HeadingSample, Place
 from hardware.reasons.iq_recording import HeadingsApart, HeadingsOfOtherLength, SigmfFieldMissing
@@ -32,11 +30,10 @@ def annotated_headings(recorded: SigmfRecording) -> list[HeadingSample]:
         raise RecordingError(SigmfFieldMissing(str(recorded.path), AZIMUTH_KEY))
     headings: list[HeadingSample] = []
     for azimuth in recorded.azimuths:
-        begin_s = recorded.time_of(azimuth.first)
-        length_s = min(azimuth.count, recorded.samples.size) / recorded.sample_rate_hz
-        repeats = max(math.ceil(length_s / STEADY_S), 1)
-        inside = begin_s + length_s * (np.arange(repeats) + 0.5) / repeats
-        headings += [HeadingSample(float(at_s), azimuth.azimuth_deg) for at_s in inside]
+        count = min(azimuth.count, recorded.samples.size)
+        repeats = max(math.ceil(count / recorded.sample_rate_hz / STEADY_S), 1)
+        inside = [azimuth.first + int(count * (k + 0.5) / repeats) for k in range(repeats)]
+        headings += [HeadingSample(recorded.time_of(sample), azimuth.azimuth_deg) for sample in inside]
     return headings
 
 
@@ -67,7 +64,7 @@ def headings_from(path: Path, recorded: SigmfRecording, remarks: list[RecordingR
         raise RecordingError(FileUnusable(str(path), "one_heading"))
     if max(h.at_s for h in headings) < EPOCH_S:
         headings = [replace(h, at_s=h.at_s + recorded.start_s) for h in headings]
-    elif recorded.segments[0].at_s is None:
+    elif not recorded.dated:
         raise RecordingError(SigmfFieldMissing(str(recorded.path), "core:datetime"))
     first_s, last_s = _span_s(recorded, headings)
     length_s = recorded.duration_s

@@ -9,6 +9,7 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -17,6 +18,7 @@ import sigmf
 from numpy.typing import NDArray
 
 from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError
+from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.readings import Place
 from hardware.reasons.iq_recording import (
     Field,
@@ -28,6 +30,7 @@ from hardware.reasons.iq_recording import (
 from hardware.reasons.table import FileUnreadable
 from hardware.sdr.sigmf_names import DATA, META
 
+NUM_CHANNELS_KEY: Final = "core:num_channels"
 AZIMUTH_KEY: Final = "antenna:azimuth_angle"
 """Of the antenna extension to SigMF: direction of the main beam from north, degrees clockwise."""
 
@@ -52,21 +55,20 @@ class Azimuth:
 class Samples:
     """Of a recording, read from its file piece by piece: as complex64 they take four times as much as on most disks.
 
-    size: how many there are; of several channels those of all, in turn.
+    Of several channels, whose samples lie interleaved in the file, the first one's. size: how many there are.
     """
 
     def __init__(self, recording: sigmf.SigMFFile) -> None:
         self._recording = recording
-        self.size = recording.sample_count * recording.num_channels
+        self.size: int = recording.sample_count
 
     def part(self, first: int, end: int) -> NDArray[np.complex64]:
         """(end - first,), 1.0 = full scale; fewer at the end of the recording."""
-        channels, end = self._recording.num_channels, min(end, self.size)
-        if end <= first:
+        count = min(end, self.size) - first
+        if count <= 0:
             return np.empty(0, np.complex64)
-        begin = first // channels
-        read = self._recording.read_samples(begin, -(-end // channels) - begin)
-        return np.asarray(read, dtype=np.complex64).ravel()[first - begin * channels :][: end - first]
+        read = np.asarray(self._recording.read_samples(first, count), dtype=np.complex64)
+        return read if read.ndim == 1 else np.ascontiguousarray(read[:, 0])
 
     def parts(self, length: int) -> Iterator[NDArray[np.complex64]]:
         """All of them, `length` at a time, fewer in the last."""
@@ -79,6 +81,7 @@ class SigmfRecording:
 
     path: Path
     samples: Samples
+    channels: int
     sample_rate_hz: float
     centre_hz: float
     segments: tuple[Segment, ...]
@@ -87,19 +90,36 @@ class SigmfRecording:
 
     @property
     def start_s(self) -> float:
-        """UTC epoch seconds of the first sample; 0 when the recording does not state it."""
-        return self.segments[0].at_s or 0.0
+        """UTC epoch seconds of the first sample; 0 when no capture states a time."""
+        return self.time_of(0)
+
+    @property
+    def dated(self) -> bool:
+        """Whether a capture states its time."""
+        return any(segment.at_s is not None for segment in self.segments)
 
     @property
     def duration_s(self) -> float:
-        """By its sample count: gaps between segments do not count."""
-        return self.samples.size / self.sample_rate_hz
+        """From the first sample to the last, with what went by between captures."""
+        return self.time_of(self.samples.size - 1) + 1.0 / self.sample_rate_hz - self.start_s
 
     def time_of(self, sample: int) -> float:
-        """UTC epoch seconds of a sample: its capture's time, or counted on from the last capture that states one."""
-        known = [s for s in self.segments if s.first <= sample and s.at_s is not None]
-        first, at_s = (known[-1].first, known[-1].at_s or 0.0) if known else (0, self.start_s)
+        """UTC epoch seconds of a sample: its capture's time, or counted on from the last capture that states one, or
+        back from the first."""
+        stated = [(segment.first, segment.at_s) for segment in self.segments if segment.at_s is not None]
+        before = [one for one in stated if one[0] <= sample]
+        first, at_s = before[-1] if before else stated[0] if stated else (0, 0.0)
         return at_s + (sample - first) / self.sample_rate_hz
+
+    def blocks(self, size: int) -> Iterator[IqBlock]:
+        """`size` samples each, capture by capture at its own time; that time went by between two counts as loss."""
+        firsts = [segment.first for segment in self.segments]
+        for begin, end in pairwise([*firsts, self.samples.size]):
+            gap_s = self.time_of(begin) - self.time_of(begin - 1) - 1.0 / self.sample_rate_hz if begin > 0 else 0.0
+            lost = 1 if abs(gap_s) > 1.0 / self.sample_rate_hz else 0
+            for first in range(begin, end, size):
+                part = self.samples.part(first, min(first + size, end))
+                yield IqBlock(self.time_of(first), part, clipped_at_full_scale(part), lost if first == begin else 0)
 
 
 def load_sigmf(path: Path | str) -> SigmfRecording:
@@ -132,6 +152,7 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     return SigmfRecording(
         path,
         samples,
+        recording.num_channels,
         float(rate),
         float(centre),
         tuple(Segment(int(c.get(sigmf.SAMPLE_START_KEY, 0)), _time(path, c)) for c in captures),
@@ -149,28 +170,31 @@ def _opened(path: Path) -> sigmf.SigMFFile:
         meta, data = path.with_suffix(META), path.with_suffix(DATA)
         if not meta.is_file():
             raise RecordingError(SigmfFileMissing(str(path), meta.name))
-        _refuse_dataset_elsewhere(meta)
+        _refuse_unread(meta)
         if not data.is_file():
             raise RecordingError(SigmfFileMissing(str(path), data.name))
     elif not path.is_file():
         raise RecordingError(FileUnreadable(str(path), os.strerror(errno.ENOENT)))
     try:
         recording = sigmf.fromfile(str(path))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, sigmf.error.SigMFError) as error:
+    except (OSError, ArithmeticError, ValueError, KeyError, TypeError, AttributeError, sigmf.error.SigMFError) as error:
         raise RecordingError(FileUnreadable(str(path), str(error))) from error
     if not isinstance(recording, sigmf.SigMFFile):
         raise RecordingError(SamplesUnusable(str(path), "collection"))
     return recording
 
 
-def _refuse_dataset_elsewhere(meta: Path) -> None:
-    """A foreign meta file must not make us read another file than its own data."""
+def _refuse_unread(meta: Path) -> None:
+    """A foreign meta file must not make us read another file than its own data, nor divide it by no channels."""
     try:
-        dataset = json.loads(meta.read_bytes())["global"].get(sigmf.DATASET_KEY)
+        of_all = json.loads(meta.read_bytes())["global"]
+        dataset, channels = of_all.get(sigmf.DATASET_KEY), of_all.get(NUM_CHANNELS_KEY, 1)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise RecordingError(FileUnreadable(str(meta), str(error))) from error
     if dataset is not None:
         raise _unusable(meta, "core:dataset", dataset)
+    if not isinstance(channels, int) or channels < 1:
+        raise _unusable(meta, "core:num_channels", channels)
 
 
 def _time(path: Path, capture: dict[str, Any]) -> float | None:

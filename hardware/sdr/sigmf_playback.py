@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator
+from dataclasses import replace
 from pathlib import Path
 
 from hardware.direction_finding.table_file import RecordingError
-from hardware.iq import IqBlock, clipped_at_full_scale
+from hardware.iq import IqBlock
 from hardware.ports import Clock, ReceiverError
 from hardware.reasons.channels import RecordedElsewhere
 from hardware.sdr.sigmf_file import load_sigmf
 
 
 class SigmfSource:
-    """Plays one recording. With a clock, at the pace it was recorded (time stamps from the clock); without one, as
-    fast as it is read (time stamps from the recording's own datetime, or seconds from 0)."""
+    """Plays one recording, of several channels the first. With a clock, at the pace it was recorded (time stamps from
+    the clock); without one, as fast as it is read (time stamps from the times its captures state, or seconds from 0).
+    """
 
     def __init__(self, path: Path | str, clock: Clock | None = None, block_s: float = 0.05) -> None:
         self._path = Path(path)
@@ -26,9 +28,8 @@ class SigmfSource:
             recording = load_sigmf(path)
         except RecordingError as error:
             raise ReceiverError(error.reason) from error
-        self._samples = recording.samples
+        self._recording = recording
         self._rate, self._centre = recording.sample_rate_hz, recording.centre_hz
-        self._start_s = recording.start_s
 
     @property
     def sample_rate_hz(self) -> float:
@@ -42,8 +43,8 @@ class SigmfSource:
 
     @property
     def duration_s(self) -> float:
-        """By its sample count."""
-        return self._samples.size / self._rate
+        """From its first sample to its last."""
+        return self._recording.duration_s
 
     async def open(self, centre_hz: float) -> float:
         """The recording's own centre frequency; it cannot be tuned."""
@@ -54,18 +55,16 @@ class SigmfSource:
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
         """Ends with the recording, or within a block after `close`."""
-        size = max(int(self._block_s * self._rate), 1)
-        begin_s = self._start_s if self._clock is None else self._clock.now()
-        for start in range(0, self._samples.size, size):
+        late_s = 0.0 if self._clock is None else self._clock.now() - self._recording.start_s
+        for block in self._recording.blocks(max(int(self._block_s * self._rate), 1)):
             if self._closed:
                 return
-            part = self._samples.part(start, start + size)
-            at_s = begin_s + start / self._rate
+            at_s = block.at_s + late_s
             if self._clock is not None:
-                await self._clock.sleep(max(at_s + part.size / self._rate - self._clock.now(), 0.0))
+                await self._clock.sleep(max(at_s + block.samples.size / self._rate - self._clock.now(), 0.0))
             else:
                 await asyncio.sleep(0)
-            yield IqBlock(at_s, part, clipped_at_full_scale(part))
+            yield replace(block, at_s=at_s)
 
     async def close(self) -> None:
         """Ends `blocks` at the next block; `open` allows it to be played again."""

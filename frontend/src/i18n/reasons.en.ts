@@ -374,11 +374,11 @@ export const reasonsEn: ReasonTable = {
   remarks_not_listed: ["{remarks|more remark|more remarks} about {file}: not listed one by one."],
   sigmf_field_missing: [
     "The recording {file} does not state {field}.",
-    "{field?core:sample_rate=State the samples a second, a number above zero|core:frequency=State one centre frequency in hertz; cut a recording that was retuned into one for each|core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table of time and heading beside the recording}.",
+    "{field?core:sample_rate=State the samples a second, a number above zero|core:frequency=State one centre frequency in hertz; cut a recording that was retuned into one for each|core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|core:num_channels=State of how many channels the samples are, one at least, or leave it out|antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table of time and heading beside the recording}.",
   ],
   sigmf_field_unusable: [
     "In the recording {file}, {field} cannot be used: {value}.",
-    "{field?core:sample_rate=State the samples a second, a number above zero|core:frequency=State one centre frequency in hertz; cut a recording that was retuned into one for each|core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table of time and heading beside the recording}.",
+    "{field?core:sample_rate=State the samples a second, a number above zero|core:frequency=State one centre frequency in hertz; cut a recording that was retuned into one for each|core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|core:num_channels=State of how many channels the samples are, one at least, or leave it out|antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table of time and heading beside the recording}.",
   ],
   sigmf_file_missing: [
     "The recording {file} lacks its file {missing}.",
@@ -411,6 +411,10 @@ export const reasonsEn: ReasonTable = {
   headings_of_other_length: [
     "The headings of {file} last {headings_s:1}, the samples {samples_s:1}; what they share is used.",
     "Check the recording's sample rate ({sample_rate_hz}).",
+  ],
+  first_channel_used: [
+    "The recording {file} holds {channels} channels; the first is used.",
+    "To use another one, write its samples to a recording of their own.",
   ],
   strongest_used: [
     "The strongest signal in the recording {file}, at {frequency_hz}, is used.",

@@ -7,6 +7,7 @@ const FIELD_REMEDY =
   "|core:datetime=Den Beginn der Aufnahme nennen wie in 2026-05-01T10:00:00Z oder die Zeiten der Kurse als Sekunden seitdem schreiben" +
   "|core:geolocation=Einen GeoJSON-Punkt auf der Erde nennen oder das Feld weglassen" +
   "|core:dataset=Es entfernen und die .sigmf-data-Datei wie die .sigmf-meta-Datei nennen" +
+  "|core:num_channels=Angeben, aus wie vielen Kanälen die Abtastwerte sind, mindestens einem, oder es weglassen" +
   "|antenna:azimuth_angle=In mindestens zwei Anmerkungen nennen, wohin die Antenne zeigte (in Grad), oder eine Tabelle mit Zeit und Kurs neben der Aufnahme angeben}.";
 
 export const recording = {
@@ -103,6 +104,10 @@ export const recording = {
   headings_of_other_length: [
     "Die Kurse von {file} dauern {headings_s:1}, die Abtastwerte {samples_s:1}; verwendet wird, was sie gemeinsam haben.",
     "Die Abtastrate der Aufnahme ({sample_rate_hz}) prüfen.",
+  ],
+  first_channel_used: [
+    "Die Aufnahme {file} hat {channels} Kanäle; der erste wird verwendet.",
+    "Für einen anderen dessen Abtastwerte in eine eigene Aufnahme schreiben.",
   ],
   strongest_used: [
     "Verwendet wird das stärkste Signal der Aufnahme {file}, auf {frequency_hz}.",

@@ -1,0 +1,112 @@
+"""SigMF recordings: the first of several channels is read, and each sample has the time of its capture."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from refusals import refusing
+
+from hardware.direction_finding.table_file import RecordingError
+from hardware.reasons.iq_recording import FirstChannelUsed, SigmfFieldUnusable
+from hardware.sdr.rotation import IqReading, read_rotation
+from hardware.sdr.rotation_headings import annotated_headings
+from hardware.sdr.sigmf_file import Azimuth, load_sigmf, write_sigmf
+from hardware.sdr.sigmf_playback import SigmfSource
+
+RATE_HZ = 2000.0
+CENTRE_HZ = 150e6
+BEGAN_S = 1_780_000_000.0
+
+
+def changed(path: Path, captures: list[dict[str, Any]] | None = None, **of_all: Any) -> Path:
+    meta = json.loads(path.read_text())
+    meta["global"] |= {f"core:{name}": value for name, value in of_all.items()}
+    meta["captures"] = meta["captures"] if captures is None else captures
+    path.write_text(json.dumps(meta))
+    return path
+
+
+def ramp(count: int) -> np.ndarray:
+    return (np.arange(1, count + 1) / count + 0j).astype(np.complex64)
+
+
+def capture(first: int, stamp: str | None = None) -> dict[str, Any]:
+    when = {} if stamp is None else {"core:datetime": stamp}
+    return {"core:sample_start": first, "core:frequency": CENTRE_HZ} | when
+
+
+def in_two(folder: Path, first: str | None, second: str | None) -> Path:
+    """2000 samples; those from 1000 on are a capture of their own."""
+    azimuths = [Azimuth(0, 1000, 0.0), Azimuth(500, 1000, 10.0)]
+    path = write_sigmf(folder / "two", ramp(2000), RATE_HZ, CENTRE_HZ, BEGAN_S, azimuths)
+    return changed(path, [capture(0, first), capture(1000, second)])
+
+
+@pytest.mark.parametrize("channels", [2, 3])
+def test_the_first_of_several_channels_is_read(tmp_path: Path, channels: int) -> None:
+    own = ramp(1000)
+    interleaved = np.stack([own, *[-own] * (channels - 1)], axis=1).ravel()
+    path = changed(write_sigmf(tmp_path / "two", interleaved, RATE_HZ, CENTRE_HZ, BEGAN_S), num_channels=channels)
+    recorded = load_sigmf(path)
+    assert recorded.samples.size == 1000
+    assert recorded.duration_s == pytest.approx(0.5)
+    assert np.array_equal(recorded.samples.part(0, 1000), own)
+    assert np.array_equal(np.concatenate(list(recorded.samples.parts(7))), own)
+    assert np.array_equal(recorded.samples.part(990, 2000), own[990:])
+
+
+def test_of_several_channels_the_first_gives_the_bearing_and_it_is_said(tmp_path: Path) -> None:
+    t = np.arange(24_000) / RATE_HZ
+    tone = (1.2 + np.cos(2 * np.pi * t / 12.0)) * np.exp(2j * np.pi * 300.0 * t)
+    noise = 1e-3 * np.random.default_rng(1).normal(size=(3, t.size))
+    azimuths = [Azimuth(k * 200, 200, 3.0 * k) for k in range(120)]
+    one = write_sigmf(tmp_path / "one", (tone + noise[0]).astype(np.complex64), RATE_HZ, CENTRE_HZ, BEGAN_S, azimuths)
+    both = np.stack([tone + noise[0], noise[1] + 1j * noise[2]], axis=1).ravel().astype(np.complex64)
+    two = changed(write_sigmf(tmp_path / "two", both, RATE_HZ, CENTRE_HZ, BEGAN_S, azimuths), num_channels=2)
+    iq = IqReading(frequency_hz=CENTRE_HZ + 300.0)
+    alone, together = read_rotation(one, iq=iq), read_rotation(two, iq=iq)
+    assert np.array_equal(alone.sweeps[0].sweep.power_db, together.sweeps[0].sweep.power_db)
+    assert (alone.remarks, together.remarks) == ((), (FirstChannelUsed(str(two), 2),))
+
+
+@pytest.mark.parametrize("channels", [0, -1, 1.5, "2"])
+def test_a_number_of_channels_that_cannot_be_is_named(tmp_path: Path, channels: Any) -> None:
+    path = write_sigmf(tmp_path / "two", ramp(1000), RATE_HZ, CENTRE_HZ, BEGAN_S)
+    with refusing(SigmfFieldUnusable(str(path), "core:num_channels", str(channels)), RecordingError):
+        load_sigmf(changed(path, num_channels=channels))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "began_s", "later_s"),
+    [
+        ("2026-05-28T20:26:40Z", "2026-05-28T20:26:50Z", BEGAN_S, 10.0),
+        ("2026-05-28T20:26:40Z", None, BEGAN_S, 0.5),
+        (None, "2026-05-28T20:26:50Z", BEGAN_S + 9.5, 0.5),
+        (None, None, 0.0, 0.5),
+    ],
+)
+async def test_each_sample_has_its_captures_time(
+    tmp_path: Path, first: str | None, second: str | None, began_s: float, later_s: float
+) -> None:
+    path = in_two(tmp_path, first, second)
+    recorded = load_sigmf(path)
+    assert [recorded.time_of(k) - began_s for k in (0, 999, 1000, 1500)] == pytest.approx(
+        [0.0, 0.4995, later_s, later_s + 0.25], abs=1e-6
+    )
+    assert recorded.start_s == pytest.approx(began_s)
+    assert recorded.duration_s == pytest.approx(later_s + 0.5)
+    # the turn of 10 degrees lies across the two captures
+    inside = [h.at_s - began_s for h in annotated_headings(recorded) if h.heading_deg == 10.0]
+    assert inside == pytest.approx([0.375, later_s + 0.125])
+    source = SigmfSource(path, block_s=0.2)
+    await source.open(CENTRE_HZ)
+    blocks = [block async for block in source.blocks()]
+    assert [block.at_s - began_s for block in blocks] == pytest.approx(
+        [0.0, 0.2, 0.4, later_s, later_s + 0.2, later_s + 0.4], abs=1e-6
+    )
+    assert [bool(block.lost) for block in blocks] == [False] * 3 + [later_s > 0.5] + [False] * 2
+    assert np.array_equal(np.concatenate([block.samples for block in blocks]), ramp(2000))
