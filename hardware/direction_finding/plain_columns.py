@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from hardware.direction_finding.table_file import (
+    LONGEST_CELL,
     RecordingError,
     Row,
     Table,
@@ -19,7 +20,7 @@ from hardware.direction_finding.table_file import (
 )
 from hardware.direction_finding.table_places import Places, place_columns
 from hardware.direction_finding.table_tags import FREQUENCIES, frequency_hz
-from hardware.reasons.table import FileUnusable, TooManyCells
+from hardware.reasons.table import ColumnsAlike, FileUnusable, TooManyCells
 
 Unit = Literal["decibels", "linear", "unnamed"]
 
@@ -108,8 +109,13 @@ def _named(table: Table, header: Row, rows: Sequence[Row]) -> Columns:
     names = header.cells
     heading = column_of(names, *HEADING, *RADIANS)
     power = column_of(names, *POWER, *LINEAR)
-    if heading is None or power is None or [*map(plain_name, names)].count(plain_name(names[power])) > 1:
+    if heading is None or power is None:
         raise table.columns_unknown(header, *EXPECTED)
+    alike = [k for k, name in enumerate(names) if plain_name(name) == plain_name(names[power])]
+    if len(alike) > 1:
+        one, other = alike[:2]
+        told = names[one][:LONGEST_CELL], names[other][:LONGEST_CELL]
+        raise RecordingError(ColumnsAlike(str(table.path), header.line, one + 1, told[0], other + 1, told[1]))
     frequency, turns = column_of(names, *FREQUENCIES), [column_of(names, name) for name in TURNS]
     return Columns(
         heading=heading,

@@ -38,6 +38,9 @@ _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _SEPARATOR_TOLD = re.compile(r"\"?sep=.\"?", re.IGNORECASE)
 """First line of what Excel writes; which one it is shows in the others."""
 _LINES = re.compile(r"[^\r\n]+")
+_BEYOND_ASCII, _ESCAPED = re.compile("[\x80-\ud7ff\ue000-\U0010ffff]"), re.compile("[\udc80-\udcff]")
+_LATIN_1 = {0xDC00 + byte: byte for byte in range(0x80, 0x100)}
+"""What bytes stand for that are no UTF-8."""
 _MINUS = str.maketrans("\u2212\u2013", "--")
 """As typesetters write it."""
 
@@ -180,13 +183,17 @@ def _words(row: Row) -> tuple[str, ...]:
 
 
 def decoded(raw: bytes) -> str:
-    """A file's text: UTF-16 where it says so, as spreadsheets export it; UTF-8 or, failing that, Latin-1."""
+    """A file's text: UTF-16 where it says so, as spreadsheets export it; UTF-8, but for a few bytes of Latin-1; or
+    Latin-1."""
     if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return raw.decode("utf-16", errors="replace")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return raw.decode("latin-1")
+        text = raw.decode("utf-8-sig", errors="surrogateescape")
+    if len(_BEYOND_ASCII.findall(text)) > len(_ESCAPED.findall(text)):
+        return text.translate(_LATIN_1)
+    return raw.decode("latin-1")
 
 
 def lines_of(text: str) -> Iterator[tuple[int, str]]:

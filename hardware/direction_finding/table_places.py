@@ -28,6 +28,7 @@ _LETTERS: dict[_Axis, tuple[str, ...]] = {
     "latitude": ("ns", "n_s", *(f"{axis}_{own}" for axis in ("lat", "latitude") for own in ("ns", "n_s", *_OWN))),
     "longitude": ("ew", "e_w", *(f"{axis}_{own}" for axis in ("lon", "longitude") for own in ("ew", "e_w", *_OWN))),
 }
+_OF_ZONE = (*(f"{of}hemisphere" for of in ("", "utm_", "zone_")), *_LETTERS["latitude"])
 _SIGNS: dict[_Axis, dict[str, float]] = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
 _WORDS = {"NORTH": "N", "NORD": "N", "SOUTH": "S", "SÜD": "S", "SUD": "S", "EAST": "E", "EST": "E", "WEST": "W"}
 _UNSURE = {"O", "OST", "OUEST", "OESTE"}
@@ -41,8 +42,13 @@ _FINE_DEG = re.compile(r"[+-]?\d{1,3}[.,]\d{4,}")
 _MINUTES = re.compile(r"(\d{1,3})[°º: ] ?(\d{1,2}(?:[.,]\d{1,9})?)['′’]?")
 _SECONDS = re.compile(r"(\d{1,3})[°º: ] ?(\d{1,2})['′’: ] ?(\d{1,2}(?:[.,]\d{1,9})?)(?:\"|″|”|'')?")
 """Of no sign: which parts it would hold for is written in more than one way."""
+_SENT: dict[_Axis, re.Pattern[str]] = {
+    "latitude": re.compile(r"(\d\d)(\d\d(?:[.,]\d{1,9})?)"),
+    "longitude": re.compile(r"(\d{3})(\d\d(?:[.,]\d{1,9})?)"),
+}
+"""Degrees and minutes in one number, as in the sentences that receivers send (NMEA 0183)."""
 
-_ZONE = re.compile(r"(?:UTM ?)?0?(\d{1,2})[ -]?([C-HJ-NP-X])((?<=N)ORTH|(?<=S)OUTH)?")
+_ZONE = re.compile(r"(?:UTM ?)?0?(\d{1,2})(?:[ -]?([C-HJ-NP-X])((?<=N)ORTH|(?<=S)OUTH)?)?")
 _EPSG = re.compile(r"(?:EPSG:)?32([67])(\d\d)")
 _ZONES, _ZONE_DEG = 60, 6.0
 MOST_ZONES = 2
@@ -93,8 +99,11 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
         value = number_of(cell.strip("NSEWnsew").strip()) if told else None
         # a small letter behind seconds is their unit
         value = _sexagesimal(cell.strip("NSEW").strip()) if value is None else value
+    sent = _SENT[axis].fullmatch(cell.strip("NSEWnsew").strip())
     if letter is not None:
         told.append(_hemisphere(row, letter))
+    if sent is not None:
+        value = _sexagesimal(f"{sent[1]}:{sent[2]}") if told else None
     if value is None or len(told) > 1 or not signs.keys() >= {*told}:
         return None
     if told and value < 0.0 and signs[told[0]] > 0.0:
@@ -110,9 +119,9 @@ def _hemisphere(row: Row, column: int) -> str:
     return known if known in {"N", "S", "E", "W", *_UNSURE} else ""
 
 
-def _letters(names: tuple[str, ...], rows: Sequence[Row], axis: _Axis) -> int | None:
-    """The column that is named for them, unless it holds something else, as a number of satellites."""
-    column = column_of(names, *_LETTERS[axis])
+def _letters(names: tuple[str, ...], rows: Sequence[Row], *called: str) -> int | None:
+    """The column that is called so, unless it holds something else than hemispheres, as a number of satellites."""
+    column = column_of(names, *called)
     return column if column is not None and any(_hemisphere(row, column) for row in rows) else None
 
 
@@ -127,16 +136,18 @@ def _sexagesimal(cell: str) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class UtmColumns:
-    """Indices from 0 of places in the Universal Transverse Mercator grid."""
+    """Indices from 0 of places in the Universal Transverse Mercator grid. letter: that of the hemispheres; None: there
+    is none, and zones tell theirs."""
 
     easting: int
     northing: int
     zone: int
+    letter: int | None = None
 
     @property
-    def columns(self) -> tuple[int, ...]:
+    def columns(self) -> tuple[int | None, ...]:
         """All of them."""
-        return (self.easting, self.northing, self.zone)
+        return (self.easting, self.northing, self.zone, self.letter)
 
     def place(self, row: Row) -> Place | tuple[int, Quantity]:
         """Where the row was taken, or the column that does not tell it."""
@@ -145,7 +156,7 @@ class UtmColumns:
             return self.easting, "utm"
         if northing is None:
             return self.northing, "utm"
-        zone = _zone(row.cells[self.zone] if self.zone < len(row.cells) else "", northing)
+        zone = _zone_of(row, self.zone, self.letter, northing)
         if zone is None:
             return self.zone, "utm"
         least, most = _NORTHINGS_M[zone.northern]
@@ -166,19 +177,25 @@ class _Zone:
     band: str = ""
 
 
-def _zone(cell: str, northing_m: float) -> _Zone | None:
-    """Of "22N", the band "22U", "22 North" or EPSG:32622; None where it does not tell, as "17S" between 32 and 40
-    degrees, which is either the band there or the hemisphere."""
-    told = cell.strip().upper()
+def _zone_of(row: Row, column: int, letter: int | None, northing_m: float) -> _Zone | None:
+    """Of "22N", the band "22U", "22 North" or EPSG:32622, or of "22" beside its hemisphere; None where it does not
+    tell, as "17S" between 32 and 40 degrees, which is either the band there or the hemisphere."""
+    told = row.cells[column].strip().upper() if column < len(row.cells) else ""
+    north = {"N": True, "S": False}.get("" if letter is None else _hemisphere(row, letter))
     by_code, found = _EPSG.fullmatch(told), _ZONE.fullmatch(told)
     if by_code is not None:
         zone = _Zone(int(by_code[2]), by_code[1] == "6")
-    elif found is None or (found[2] == "S" and not found[3] and _BAND_S_M[0] <= northing_m <= _BAND_S_M[1]):
+    elif found is None or (found[2] is None and north is None):
         return None
+    elif found[2] is None:
+        zone = _Zone(int(found[1]), north is True)
+    elif found[2] == "S" and not found[3] and north is not False:
+        if north is None and _BAND_S_M[0] <= northing_m <= _BAND_S_M[1]:
+            return None
+        zone = _Zone(int(found[1]), north is True, "S" if north else "")
     else:
-        letter = found[2]
-        zone = _Zone(int(found[1]), letter >= "N" and letter != "S", "" if letter in "NS" else letter)
-    return zone if 1 <= zone.number <= _ZONES else None
+        zone = _Zone(int(found[1]), found[2] >= "N" and found[2] != "S", "" if found[2] in "NS" else found[2])
+    return zone if 1 <= zone.number <= _ZONES and north in (None, zone.northern) else None
 
 
 def _fits(band: str, lat: float) -> bool:
@@ -197,12 +214,13 @@ def place_columns(names: tuple[str, ...], rows: Sequence[Row]) -> Places | None:
     easting, northing, zone = (column_of(names, *some) for some in (EASTING, NORTHING, ZONE))
     lat, lon = column_of(names, *LATITUDE), column_of(names, *LONGITUDE)
     if lat is not None and lon is not None:
-        letters = _letters(names, rows, "latitude"), _letters(names, rows, "longitude")
+        letters = (_letters(names, rows, *called) for called in _LETTERS.values())
         return PlaceColumns(lat, lon, *letters) if column_of(names, *_PARTS) is None else None
     if easting is None or northing is None:
         return None
     if zone is not None:
-        zones = {found.number for row in rows if zone < len(row.cells) and (found := _zone(row.cells[zone], 0.0))}
-        return UtmColumns(easting, northing, zone) if len(zones) <= MOST_ZONES else None
+        letter = _letters(names, rows, *_OF_ZONE)
+        zones = {found.number for row in rows if (found := _zone_of(row, zone, letter, 0.0))}
+        return UtmColumns(easting, northing, zone, letter) if len(zones) <= MOST_ZONES else None
     cells = {row.cells[k] for row in rows for k in (easting, northing) if row.number(k) is not None}
     return PlaceColumns(northing, easting) if cells and all(map(_FINE_DEG.fullmatch, cells)) else None

@@ -67,6 +67,24 @@ class ColumnsUnknown:
 
 
 @dataclass(frozen=True, slots=True)
+class ColumnsAlike:
+    """line: the header's. column, other: from 1. name, other_name: as they stand there."""
+
+    file: str
+    line: int
+    column: int
+    name: str
+    other: int
+    other_name: str
+    code: Literal["columns_alike"] = "columns_alike"
+
+    english: ClassVar[Words] = Words(
+        'Columns {column} ("{name}") and {other} ("{other_name}") of {file} (line {line}) have the same name.',
+        "Rename the one that is not meant.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class TooManyCells:
     """columns: those that the header names, or the two that a table without a header has. line: the first such row."""
 
@@ -130,7 +148,7 @@ class CellUnusable:
     english: ClassVar[Words] = Words(
         'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?'
         "kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|"
-        "utm=UTM value (zone 22N)|"
+        "utm=UTM value (zone 22N, or 22 beside a column hemisphere)|"
         "bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}."
     )
 
@@ -320,6 +338,7 @@ TableReason = (
     FileUnreadable
     | FileUnusable
     | ColumnsUnknown
+    | ColumnsAlike
     | TooManyCells
     | HeadingsInRadians
     | PowerLinear

@@ -329,6 +329,10 @@ export const reasonsEn: ReasonTable = {
     "The {columns|column|columns} of {file} (line {line}) cannot be told apart.",
     "Name them in a header line: {expected}.",
   ],
+  columns_alike: [
+    'Columns {column} ("{name}") and {other} ("{other_name}") of {file} (line {line}) have the same name.',
+    "Rename the one that is not meant.",
+  ],
   headings_in_radians: [
     "The angles in column {column} of {file} ({least:2} to {most:2}) seem to be radians.",
     "Write degrees, and name the column heading_deg or bearing_deg.",
@@ -338,7 +342,7 @@ export const reasonsEn: ReasonTable = {
     "Write decibels, and name the column power_db.",
   ],
   cell_unusable: [
-    'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|utm=UTM value (zone 22N)|bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}.',
+    'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|utm=UTM value (zone 22N, or 22 beside a column hemisphere)|bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}.',
   ],
   row_left_out: [
     "Line {line} of {file} is left out: {why?columns=it has too few columns|not_open=it ends a rotation that was never begun|two_offsets=columns 20 and 21 both carry an antenna offset|wide=it has more numbers than there are columns}.",

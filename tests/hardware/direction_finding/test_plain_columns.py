@@ -11,7 +11,7 @@ from refusals import refusing
 from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.readings import Place
-from hardware.reasons.table import ColumnsUnknown, FrequenciesUnread, RowLeftOut, TooManyCells
+from hardware.reasons.table import ColumnsAlike, ColumnsUnknown, FrequenciesUnread, RowLeftOut, TooManyCells
 
 ROWS = [(float(heading) + 0.25, -60.5 - heading / 20) for heading in range(0, 360, 10)]
 EXPECTED = ("heading_deg", "power_db")
@@ -126,9 +126,10 @@ def test_headings_of_a_turn_before_power_below_zero_need_no_header(tmp_path: Pat
     assert recorded.sweep.heading_deg.tolist() == [heading for heading, _ in ROWS]
 
 
-def test_two_columns_of_one_name_cannot_be_told_apart(tmp_path: Path) -> None:
-    path = file_of(tmp_path, "heading_deg,power_db,power_db", "10,-60,-70")
-    with refusing(ColumnsUnknown(str(path), 1, 3, EXPECTED), RecordingError):
+@pytest.mark.parametrize(("one", "other"), [("power_db", "power_db"), ("snr", "snr.")])
+def test_two_columns_of_one_name_are_both_named(tmp_path: Path, one: str, other: str) -> None:
+    path = file_of(tmp_path, f"heading_deg,{one},{other}", "10,-60,-70")
+    with refusing(ColumnsAlike(str(path), 1, 2, one, 3, other), RecordingError):
         read_recording(path)
 
 

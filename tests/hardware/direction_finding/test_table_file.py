@@ -11,7 +11,7 @@ from refusals import refusing
 
 from hardware.direction_finding.pattern_file import load_pattern
 from hardware.direction_finding.recordings import read_recording
-from hardware.direction_finding.table_file import RecordingError, lines_of, read_table
+from hardware.direction_finding.table_file import RecordingError, decoded, lines_of, read_table
 from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnusable, NothingUsable, Quantity
 
 TURN = "heading_deg,power_db\n" + "\n".join(f"{heading},{-60 - heading / 20}" for heading in range(0, 360, 10))
@@ -60,6 +60,20 @@ def test_spreadsheets_save_unicode_in_several_ways(tmp_path: Path, encoding: str
     (recorded,) = read_recording(path).sweeps
     assert recorded.sweep.power_db.size == 36
     assert load_pattern(path).gain_db.size == 36
+
+
+@pytest.mark.parametrize(
+    ("raw", "text"),
+    [
+        ("Richtung;Pegel in dBµV;Füchse;Häher\n".encode() + b"10;-60;F\xfcchsin, \xff\n", "Pegel in dBµV;Füchse"),
+        ("10°;-60;Füchse\n".encode("latin-1"), "10°;-60;Füchse"),
+        ("10°;-60;Ã\n".encode("latin-1"), "10°;-60;Ã"),
+    ],
+)
+def test_a_few_bytes_of_another_encoding_leave_the_others_as_they_are(raw: bytes, text: str) -> None:
+    assert text in decoded(raw)
+    assert "Füchs" in decoded(raw) or "Ã" in text
+    assert "\ufffd" not in decoded(raw)
 
 
 def test_zeros_are_no_text_in_any_encoding(tmp_path: Path) -> None:

@@ -134,6 +134,69 @@ def test_utm_is_read_with_its_zone_and_hemisphere(zone: str, lat: float, lon: fl
     assert (place.lat, place.lon) == pytest.approx((lat, lon), abs=1e-6)
 
 
+@pytest.mark.parametrize("name", ["hemisphere", "utm_hemisphere", "N/S"])
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [
+        ("279215,5359442,22,N", (48.349526, -53.980103)),
+        ("279215,5359442,22,south", (-41.886131, -53.661074)),
+        ("279215,5359442,22N,N", (48.349526, -53.980103)),
+        ("279215,5359442,22G,S", (-41.886131, -53.661074)),
+        ("279215,5359442,32622,N", (48.349526, -53.980103)),
+        ("279215,4000000,17S,N", (36.119590, -83.453172)),
+        ("279215,4000000,17S,S", (-54.100711, -84.376981)),
+        ("279215,5359442,22N,S", 2),
+        ("279215,5359442,22,", 2),
+        ("279215,5359442,22,E", 2),
+        ("500000,7500000,33,W", 2),
+        ("279215,4000000,17S,E", 2),
+        ("279215,5359442,22", 2),
+    ],
+)
+def test_the_hemisphere_of_a_zone_may_have_a_column(name: str, line: str, place: tuple[float, float] | int) -> None:
+    row = Row(1, cells_of(line))
+    columns = place_columns(("easting", "northing", "zone", name), [row, Row(2, ("", "", "", "N"))])
+    assert columns is not None
+    found = columns.place(row)
+    if isinstance(place, int):
+        assert found == (place, "utm")
+    else:
+        assert isinstance(found, Place)
+        assert (found.lat, found.lon) == pytest.approx(place, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [
+        ("5006.508N,00712.3E", Place(50.10846666666667, 7.205)),
+        ("0050.5N,00712.3E", Place(0.8416666666666667, 7.205)),
+        ("S 0050.5,W 11730", Place(-0.8416666666666667, -117.5)),
+        ("0050,5N;00712,3E", Place(0.8416666666666667, 7.205)),
+        ("0050.5,00712.3", (0, "latitude")),
+        ("0060.5N,00712.3E", (0, "latitude")),
+        ("9030N,00712.3E", (0, "latitude")),
+        ("0050.5N,0712.3E", (1, "longitude")),
+        ("050.5N,007.3E", Place(50.5, 7.3)),
+    ],
+)
+def test_degrees_and_minutes_are_read_as_receivers_send_them(line: str, place: Place | tuple[int, str]) -> None:
+    found = place_in(line)
+    if isinstance(place, Place):
+        assert isinstance(found, Place)
+        assert (found.lat, found.lon) == pytest.approx((place.lat, place.lon), abs=1e-9)
+    else:
+        assert found == place
+
+
+def test_receivers_degrees_and_minutes_have_their_hemispheres_in_columns() -> None:
+    row = Row(1, cells_of("5006.508,N,00712.3,W"))
+    columns = place_columns(("lat", "ns", "lon", "ew"), [row])
+    assert columns is not None
+    place = columns.place(row)
+    assert isinstance(place, Place)
+    assert (place.lat, place.lon) == pytest.approx((50.10846666666667, -7.205), abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("line", "column"),
     [

@@ -20,12 +20,16 @@ export const recording = {
     "Die {columns|Spalte|Spalten} von {file} (Zeile {line}) {columns?1=ist|*=sind} nicht zu unterscheiden.",
     "Sie in einer Kopfzeile nennen: {expected}.",
   ],
+  columns_alike: [
+    "Die Spalten {column} („{name}“) und {other} („{other_name}“) von {file} (Zeile {line}) heißen gleich.",
+    "Die umbenennen, die nicht gemeint ist.",
+  ],
   too_many_cells: [
     "Zeile {line} von {file} hat {cells|Zelle|Zellen} für {columns|Spalte|Spalten}.",
     "Haben Zahlen ein Dezimalkomma, die Spalten mit Semikolons trennen; sonst jede Spalte in einer Kopfzeile nennen.",
   ],
   cell_unusable: [
-    "Zeile {line} von {file} ist ausgelassen: „{cell}“ in Spalte {column} ist {quantity?latitude=keine brauchbare Breite|longitude=keine brauchbare Länge|utm=kein brauchbarer UTM-Wert (Zone 22N)|bearing=keine brauchbare Peilung|sigma=kein brauchbarer Peilfehler|time=keine brauchbare Zeit|heading=kein brauchbarer Kurs|power=keine brauchbare Leistung|frequency=keine brauchbare Frequenz|snr=kein brauchbares SNR|attitude=keine brauchbare Lage|noise_psd=keine brauchbare Rauschdichte|kind_of_row=keine Zeilenart (7, 10 oder 11)}.",
+    "Zeile {line} von {file} ist ausgelassen: „{cell}“ in Spalte {column} ist {quantity?latitude=keine brauchbare Breite|longitude=keine brauchbare Länge|utm=kein brauchbarer UTM-Wert (Zone 22N, oder 22 neben einer Spalte hemisphere)|bearing=keine brauchbare Peilung|sigma=kein brauchbarer Peilfehler|time=keine brauchbare Zeit|heading=kein brauchbarer Kurs|power=keine brauchbare Leistung|frequency=keine brauchbare Frequenz|snr=kein brauchbares SNR|attitude=keine brauchbare Lage|noise_psd=keine brauchbare Rauschdichte|kind_of_row=keine Zeilenart (7, 10 oder 11)}.",
   ],
   row_left_out: [
     "Zeile {line} von {file} ist ausgelassen: {why?columns=Sie hat zu wenige Spalten|not_open=Sie beendet eine Drehung, die nie begann|two_offsets=Die Spalten 20 und 21 nennen beide einen Antennenversatz|wide=Sie hat mehr Zahlen, als es Spalten gibt}.",
