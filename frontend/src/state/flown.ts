@@ -1,9 +1,8 @@
-// What belongs to the search itself, and what somebody did with its record afterwards.
+// What belongs to the search itself, and what somebody did with its record afterwards. Loaded with the safety bar: small.
 import type { EventKind, MissionEvent, Recorded } from "../wire";
-import { isMain } from "./eventWeight";
 
 /** A search is over in hours; its record is labelled, copied and supposed about for years. */
-const OF_THE_RECORD: ReadonlySet<EventKind> = new Set([
+export const OF_THE_RECORD: ReadonlySet<EventKind> = new Set([
   "mission_labelled",
   "mission_brought_in",
   "mission_deleted",
@@ -17,19 +16,3 @@ const ofTheFlight = ({ kind }: MissionEvent) => !OF_THE_RECORD.has(kind) && kind
 
 /** The last event of the search, in the order of events; the last of all when there is nothing else. */
 export const lastFlown = (all: readonly Recorded[]): Recorded | undefined => all.findLast((e) => ofTheFlight(e.event)) ?? all.at(-1);
-
-/** What is only of interest to whoever plans or tends the program. */
-const OF_THE_DESK: ReadonlySet<EventKind> = new Set([
-  "mission_drafted",
-  "mission_edited",
-  "plan_chosen",
-  "plan_vetoed",
-  "flight_started",
-  "place_reached",
-  "place_passed",
-  "order_done",
-]);
-
-/** For a searcher who was not there. */
-export const isTold = (event: MissionEvent): boolean =>
-  isMain(event) && !OF_THE_RECORD.has(event.kind) && !OF_THE_DESK.has(event.kind) && !(event.kind === "preflight_checked" && event.passed);

@@ -1,7 +1,8 @@
 // The mission that the panels and the map show: at the moment looked at, as it happened or as it is supposed.
 import { computed } from "@preact/signals";
-import { serverNowMs } from "./connection";
-import { happened, reviewTimeMs } from "./moment";
+import { serverNowMs, source } from "./connection";
+import { lastFlown } from "./flown";
+import { events, happened, reviewTimeMs } from "./moment";
 import { supposedHere } from "./supposed";
 import { type MissionView, suppose } from "./view";
 
@@ -11,8 +12,8 @@ export const mission = computed<MissionView>(() => {
   return answer ? suppose(real, answer) : real;
 });
 
-/** The moment shown, ms UTC: of the review, of the mission's end, or now. */
+/** The moment shown, ms UTC: of the review, of the mission's end, of the last that a recording without one tells, or now. */
 export const shownTimeMs = computed<number>(() => {
-  const ended = mission.value.ended;
-  return reviewTimeMs.value ?? (ended ? Date.parse(ended.at) : serverNowMs.value);
+  const end = mission.value.ended?.at ?? (source.value?.happensNow === false ? lastFlown(events.value)?.at_utc : undefined);
+  return reviewTimeMs.value ?? (end ? Date.parse(end) : serverNowMs.value);
 });
