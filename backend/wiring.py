@@ -232,7 +232,7 @@ async def open_simulation(
             if latest is not None and latest > clock.now():
                 clock = ScaledClock(latest, settings.time_factor)
         hangar = Hangar(settings)
-        simulated = None if settings.vehicle_url else await hangar.enter(bool(unfinished))
+        simulated = None if settings.vehicle_url else await hangar.enter()
         missions: MissionRoom | None = None
         try:
             url = settings.vehicle_url if simulated is None else simulated.url

@@ -19,7 +19,8 @@ HOME_AMSL_M = 120.0
 
 @dataclass(frozen=True, slots=True)
 class Hangar:
-    """Remembers the simulated vehicle in a file, so that it flies on when the server is killed and is found again."""
+    """Remembers the simulated vehicle in a file, so that it is found again when the server was killed: in the air or on
+    the ground, with what is left in its battery. Whoever ends the server on purpose gets a charged one."""
 
     settings: Settings
 
@@ -36,13 +37,13 @@ class Hangar:
             "home": [s.home_lat_deg, s.home_lon_deg],
         }
 
-    async def enter(self, in_flight: bool) -> SimulatedAutopilot:
-        """The vehicle that an unfinished mission left in the air, else a new one."""
+    async def enter(self) -> SimulatedAutopilot:
+        """The vehicle that a server of these settings left behind, else a new one."""
         left = await self._left_behind()
         if left is not None:
             found, same = left
-            if in_flight and same:
-                log.warning("the simulated vehicle is still flying, it is taken over")
+            if same:
+                log.warning("the simulated vehicle of the last server is still there, it is taken over as it is")
                 return found
             await found.stop()
         s = self.settings
@@ -59,6 +60,7 @@ class Hangar:
         ports = {"connect_port": started.connect_port, "control_port": started.control_port}
         self._register.parent.mkdir(parents=True, exist_ok=True)
         self._register.write_text(json.dumps(self._key() | ports))
+        log.info("a new simulated vehicle stands at home, its battery is full")
         return started
 
     async def address_left(self) -> str | None:

@@ -1,25 +1,46 @@
 from __future__ import annotations
 
 import json
+import logging
 from pathlib import Path
+
+import pytest
 
 from backend.settings import Settings
 from backend.simulation.hangar import Hangar
 from hardware.sim.autopilot.launch import find_simulated
 
 
-async def test_a_simulated_vehicle_left_in_flight_is_found_again_and_another_is_not(tmp_path: Path) -> None:
+async def test_a_simulated_vehicle_left_behind_is_found_again_and_another_is_not(tmp_path: Path) -> None:
     hangar = Hangar(Settings(data_dir=tmp_path, seed=4))
-    first = await hangar.enter(in_flight=False)
-    again = await hangar.enter(in_flight=True)
+    first = await hangar.enter()
+    again = await hangar.enter()
     assert again.connect_port == first.connect_port
     other = Hangar(Settings(data_dir=tmp_path, seed=5))
-    fresh = await other.enter(in_flight=True)
+    fresh = await other.enter()
     assert fresh.connect_port != first.connect_port
     await first.stop()
     await other.leave(fresh)
     assert not (tmp_path / "simulated_vehicle.json").exists()
     assert await find_simulated(fresh.connect_port, fresh.control_port) is None
+
+
+async def test_a_battery_survives_a_server_that_died_and_is_full_after_one_that_ended(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.INFO, "crossfix")
+    hangar = Hangar(Settings(data_dir=tmp_path))
+    vehicle = await hangar.enter()
+    await vehicle.order("battery", percent=40)
+    left = await hangar.enter()
+    assert (await left.order("truth"))["battery_percent"] == pytest.approx(40.0, abs=1.0)
+    assert "battery is full" not in caplog.text.partition("taken over")[2]
+    await hangar.leave(vehicle)
+    caplog.clear()
+    new = await hangar.enter()
+    assert (await new.order("truth"))["battery_percent"] == pytest.approx(100.0, abs=1.0)
+    assert "its battery is full" in caplog.text
+    await hangar.leave(new)
 
 
 async def test_a_register_that_cannot_be_read_is_no_vehicle(tmp_path: Path) -> None:
