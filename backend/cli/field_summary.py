@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from backend.cli.field_missions import HOVER_W, OUTLIER_DEG, FieldMission, FieldOptions
-from planner.study.truth import wilson
+from planner.shares import wilson
 
 
 @dataclass(frozen=True, slots=True)

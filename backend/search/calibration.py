@@ -15,6 +15,7 @@ import numpy as np
 from backend.search.told import Flown, Leg, Told, ToldError
 from hardware.readings import Place
 from planner.motion import fit_motion
+from planner.shares import wilson
 from planner.types import FloatArray, LinearConstantMotion, LinearMotion, PlannerError
 
 BEARINGS_NEEDED = 8
@@ -105,14 +106,8 @@ class Calibrated:
     suggested: Suggestion | None
 
 
-def wilson(held: int, of: int, z: float = 1.96) -> Share:
-    """(p + z^2/2n +- z sqrt(p (1-p)/n + z^2/4n^2)) / (1 + z^2/n) (Wilson 1927); all that is possible when n = 0."""
-    if of == 0:
-        return Share(0, 0.0, 0.0, 1.0)
-    p = held / of
-    middle, half = p + z * z / (2 * of), z * math.sqrt(p * (1 - p) / of + z * z / (4 * of * of))
-    scale = 1 + z * z / of
-    return Share(of, p, max(0.0, (middle - half) / scale), min(1.0, (middle + half) / scale))
+def _share(held: int, of: int) -> Share:
+    return Share(of, held / of if of else 0.0, *wilson(held, of))
 
 
 def calibrate(missions: Mapping[str, tuple[str, Told]], craft: str, antenna: str) -> Calibrated:
@@ -141,12 +136,12 @@ def calibrate(missions: Mapping[str, tuple[str, Told]], craft: str, antenna: str
         not_found=sum(one.not_found for _, one in asked.values()),
         fixes=fixes,
         bearings=errors,
-        within_1_sigma=wilson(sum(z <= 1 for z in inside), len(inside)),
-        within_2_sigma=wilson(sum(z <= 2 for z in inside), len(inside)),
-        outliers=wilson(outliers, len(errors)),
-        c95=wilson(sum(one.inside for one in fixes), len(fixes)),
+        within_1_sigma=_share(sum(z <= 1 for z in inside), len(inside)),
+        within_2_sigma=_share(sum(z <= 2 for z in inside), len(inside)),
+        outliers=_share(outliers, len(errors)),
+        c95=_share(sum(one.inside for one in fixes), len(fixes)),
         error_ratio=math.sqrt(float(np.mean(np.square(ratios)))) if ratios else None,
-        forecast_90=wilson(sum(kept), len(kept)),
+        forecast_90=_share(sum(kept), len(kept)),
         sharpness_deg=_mean([one.sigma_deg for one in errors]),
         sharpness_m=_mean([one.stated_m for one in fixes]),
         forecast_90_s=_mean([one.time_90_s for one in forecasts]),

@@ -23,6 +23,7 @@ from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import stated, verdict
 from planner.geometry import bounds, contains, distance_to_convex
 from planner.motion import flight_time
+from planner.shares import wilson
 from planner.study.error_worlds import ROWS, Row
 from planner.study.errors import StudyError
 from planner.study.truth_planners import TruthPlanner, next_place
@@ -288,14 +289,6 @@ def _interval(claims: Sequence[Claim], hits: Sequence[bool]) -> tuple[float, flo
         variance = count / (count - 1) * float(off @ off) / trials**2
         trials = min(trials, share * (1.0 - share) / variance) if variance > 0.0 else trials
     return wilson(share * trials, trials)
-
-
-def wilson(successes: float, trials: float, z: float = 1.96) -> tuple[float, float]:
-    """Wilson's interval of a share (Wilson 1927)."""
-    share, square = successes / trials, z * z / trials
-    middle = (share + square / 2.0) / (1.0 + square)
-    half = z * np.sqrt(share * (1.0 - share) / trials + square / (4.0 * trials)) / (1.0 + square)
-    return max(0.0, float(middle - half)), min(1.0, float(middle + half))
 
 
 def row_named(name: str) -> Row:

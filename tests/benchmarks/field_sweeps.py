@@ -24,7 +24,7 @@ from backend.search.sector import whole_turn
 from backend.simulation.field_world import HEIGHT_M, Antenna, Field
 from hardware.sim.antenna import TabulatedAntenna
 from hardware.sim.world import Pose
-from planner.study.truth import wilson
+from planner.shares import wilson
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table

@@ -12,7 +12,7 @@ from ground import AREA, FRAME, bearing
 
 from backend.events import Event, MissionDrafted, MissionStarted, PlaceReached, Recorded, TruthNoted
 from backend.search.antenna import antenna_fact
-from backend.search.calibration import Calibrated, calibrate, wilson
+from backend.search.calibration import Calibrated, calibrate
 from backend.search.told import told as told_by
 from backend.spec import MissionSpec, SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
@@ -94,12 +94,6 @@ def test_flight_times_suggest_a_movement_model() -> None:
     assert found.suggested is not None
     assert found.suggested.speed_m_s == pytest.approx(8.0, rel=0.02)
     assert found.suggested.constant_s == pytest.approx(6.0, abs=0.3)
-
-
-def test_an_interval_is_wilsons() -> None:
-    found = wilson(8, 10)  # 0.49 to 0.94: Wilson 1927, as statsmodels' proportion_confint
-    assert (found.share, found.low, found.high) == pytest.approx((0.8, 0.4902, 0.9433), abs=1e-3)
-    assert (wilson(0, 0).low, wilson(0, 0).high) == (0.0, 1.0)
 
 
 def flown(file_deg: float, taken_off_deg: float, true_deg: float, days: int, name: str = "yagi") -> list[Recorded]:

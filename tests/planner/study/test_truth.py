@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from planner.belief.verdict import MOST_BEYOND
+from planner.shares import wilson
 from planner.study.error_worlds import ROWS, Row, Sensor, Wall
 from planner.study.errors import StudyError
-from planner.study.truth import Claim, Search, fly, missions, row_named, told, truth_of, wilson
+from planner.study.truth import Claim, Search, fly, missions, row_named, told, truth_of
 from planner.types import LinearConstantMotion, LocalizationRule, Problem
 
 AREA = np.array([[-156.0, 0.0], [156.0, 0.0], [156.0, 200.0], [-156.0, 200.0]])
@@ -172,10 +173,3 @@ def test_tags_of_one_mission_hang_together():
     trials = found.in_c95 * (1.0 - found.in_c95) / between**2
     assert (found.in_c95_low, found.in_c95_high) == pytest.approx(wilson(found.in_c95 * trials, trials))
     assert found.in_c95_low < spread.in_c95_low
-
-
-def test_wilsons_interval():
-    """Newcombe 1998, table I: 81 of 263."""
-    assert wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-4)
-    assert str(wilson(0, 60)[0]) == "0.0"  # not "-0.0"
-    assert wilson(60, 60)[1] == pytest.approx(1.0)
