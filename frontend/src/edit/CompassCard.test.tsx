@@ -47,7 +47,9 @@ it("says what was learned, from how many flights, and what the next search expec
   expect(api.compass).toHaveBeenCalledWith("craft-1", 1.5);
   expect(part("compass-bias")!.textContent).toMatch(/\+6° ± 2° with “yagi”; flights learned from: 7 \(bearings: 25\)/);
   expect(part("compass-places")!.textContent).toContain("found: 2");
-  expect(part("compass")!.textContent).toContain("up to 10°, errors 0.7 × as stated and 3 % wrong bearings");
+  expect(part("compass")!.textContent).toContain(
+    "for all its emitters, a turn of up to 10°, errors 0.7 × as stated and 3 % wrong bearings",
+  );
 });
 
 it("forgets only after a second tap", async () => {

@@ -855,7 +855,7 @@ export const de: Record<MessageKey, string> = {
   "compass.bias": "Kompass {bias}° ± {spread}° mit „{antenna}“; gelernt aus Flügen: {flights} (Peilungen: {bearings})",
   "compass.places": "Flüge, die am Fundort des Senders gemessen wurden: {places}",
   "compass.expects":
-    "Die nächste Suche erwartet bis zu {bias}° Verdrehung, Fehler vom {scale}-Fachen der Angabe und {outliers} % falsche Peilungen.",
+    "Die nächste Suche erwartet für alle ihre Sender bis zu {bias}° Verdrehung, Fehler vom {scale}-Fachen der Angabe und {outliers} % falsche Peilungen.",
   "compass.forget": "Gelerntes vergessen",
   "compass.forget.why": "Nach einer Kalibrierung, oder wenn die Antenne neu montiert wurde.",
   "compass.forget.really": "Vergessen werden Flüge: {flights}",

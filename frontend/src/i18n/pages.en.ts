@@ -575,7 +575,8 @@ export const pagesEn = {
   "compass.unknown": "Nothing learned yet. Its first flights take longer, until their bearings have shown how good it is.",
   "compass.bias": "Compass {bias}° ± {spread}° with “{antenna}”; flights learned from: {flights} (bearings: {bearings})",
   "compass.places": "Flights judged by the place where the emitter was found: {places}",
-  "compass.expects": "The next search expects a turn of up to {bias}°, errors {scale} × as stated and {outliers} % wrong bearings.",
+  "compass.expects":
+    "The next search expects, for all its emitters, a turn of up to {bias}°, errors {scale} × as stated and {outliers} % wrong bearings.",
   "compass.forget": "Forget what was learned",
   "compass.forget.why": "After a calibration, or when the antenna has been remounted.",
   "compass.forget.really": "Flights to forget: {flights}",
