@@ -65,3 +65,18 @@ it("gives the keys back to the field whose Enter asked to save what cannot be sa
   expect(document.querySelector("[data-testid=edit-problem]")?.textContent).toContain("press Enter to finish");
   expect(document.activeElement).toBe(name);
 });
+
+it("reads the mission again, after a failure, when it is told to", async () => {
+  vi.spyOn(api, "mission").mockRejectedValueOnce(new TypeError("no network"));
+  const answered = () => act(() => new Promise<void>((resolve) => setTimeout(resolve)));
+  act(() => render(<EditPage route={{ page: "edit", missionId: "first" }} />, document.body));
+  await answered();
+  expect(document.querySelector("[data-testid=edit-problem]")).not.toBeNull();
+  expect(document.querySelector("[data-testid=save]")).toBeNull();
+  vi.mocked(api.mission).mockResolvedValue({ spec: { ...someSpec(), name: "Meadow" } } as never);
+  act(() => document.querySelector<HTMLButtonElement>("[data-testid=read-again]")!.click());
+  await answered();
+  expect(shownName()).toBe("Meadow");
+  expect(document.querySelector("[data-testid=edit-problem]")).toBeNull();
+  expect(document.querySelector("[data-testid=read-again]")).toBeNull();
+});

@@ -181,16 +181,25 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
 
 /** Another draft is another form: what was wrong with one says nothing of the next. */
 export function EditPage({ route }: { route: EditRoute }) {
-  const [discards, setDiscards] = useState(0);
+  const [times, setTimes] = useState(0);
   const key = keyOf(route);
+  const onAgain = () => setTimes(times + 1);
   const onDiscard = () => {
     discard(key);
-    setDiscards(discards + 1);
+    onAgain();
   };
-  return <Editor route={route} draftKey={key} onDiscard={onDiscard} key={`${key} ${discards}`} />;
+  return <Editor route={route} draftKey={key} onAgain={onAgain} onDiscard={onDiscard} key={`${key} ${times}`} />;
 }
 
-function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKey: string; onDiscard: () => void }) {
+interface Edited {
+  route: EditRoute;
+  draftKey: string;
+  /** Reads it once more. */
+  onAgain: () => void;
+  onDiscard: () => void;
+}
+
+function Editor({ route, draftKey: key, onAgain, onDiscard }: Edited) {
   const [failed, setFailed] = useState<RequestFailed | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
   const [saving, setSaving] = useState(false);
@@ -302,9 +311,15 @@ function Editor({ route, draftKey: key, onDiscard }: { route: EditRoute; draftKe
             <a class="button" href={route.page === "edit" ? missionAddress(route.missionId) : "#/"}>
               {t("edit.cancel")}
             </a>
-            <button type="submit" class="primary" data-testid="save" disabled={saving || !now}>
-              {t(saving ? "edit.saving" : "edit.save")}
-            </button>
+            {failed && !now ? (
+              <button type="button" class="primary" data-testid="read-again" onClick={onAgain}>
+                {t("app.reload")}
+              </button>
+            ) : (
+              <button type="submit" class="primary" data-testid="save" disabled={saving || !now}>
+                {t(saving ? "edit.saving" : "edit.save")}
+              </button>
+            )}
           </div>
         </div>
       </form>
