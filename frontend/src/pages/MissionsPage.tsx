@@ -8,6 +8,7 @@ import { LabelForm } from "../panels/LabelForm";
 import { LibraryFilter } from "../panels/LibraryFilter";
 import { MiniMap } from "../panels/MiniMap";
 import { ProblemBox, problemWords } from "../panels/ProblemNote";
+import { useTeller } from "../panels/Upload";
 import * as api from "../sources/api";
 import { readRecording, replays } from "../sources/replay";
 import { upload } from "../sources/upload";
@@ -147,18 +148,21 @@ const forgetRecordings = (of: readonly Pick<MissionSummary, "mission_id">[]) => 
   for (const { mission_id } of of) replays.delete(mission_id);
 };
 
+const BUNDLES = "/bundles";
+
 /** The bundle of another installation, as a mission of this one. */
 function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }) {
   const [share, setShare] = useState<number | null>(null);
+  const tell = useTeller(BUNDLES, onProblem);
   const bring = async (file: File) => {
     onProblem(null);
     setShare(0);
     try {
-      const brought = await upload<MissionBrought>("/bundles", file, setShare, "application/zip");
+      const brought = await upload<MissionBrought>(BUNDLES, file, setShare, "application/zip");
       forgetRecordings([brought]);
       goIfHere(missionAddress(brought.mission_id));
     } catch (error) {
-      onProblem(asProblem(error));
+      tell(asProblem(error));
       setShare(null);
     }
   };

@@ -1,9 +1,26 @@
 // A button that sends a file as the body of a request, with its progress.
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { upload } from "../sources/upload";
 import type { Problem } from "../wire";
+
+/** What was refused after its page was left, by path: said when that is opened again. */
+const unsaid = new Map<string, Problem>();
+
+/** Says what is wrong with uploads to a path, to whoever is on their page, now or next time. */
+export function useTeller(path: string, onProblem: (p: Problem | null) => void): (p: Problem) => void {
+  const isLeft = useRef(false);
+  useEffect(() => {
+    const before = unsaid.get(path);
+    if (before) onProblem(before);
+    unsaid.delete(path);
+    return () => {
+      isLeft.current = true;
+    };
+  }, []);
+  return (problem) => void (isLeft.current ? unsaid.set(path, problem) : onProblem(problem));
+}
 
 export function Upload({
   path,
@@ -24,6 +41,7 @@ export function Upload({
   onProblem: (p: Problem | null) => void;
 }) {
   const [progress, setProgress] = useState<{ name: string; percent: number } | null>(null);
+  const tell = useTeller(path, onProblem);
   return (
     <>
       <label class={primary ? "button primary" : "button"}>
@@ -42,7 +60,7 @@ export function Upload({
             upload(`${path}?filename=${encodeURIComponent(file.name)}`, file, (share) =>
               setProgress({ name: file.name, percent: Math.round(100 * share) }),
             )
-              .then(onDone, (error: unknown) => onProblem(asProblem(error)))
+              .then(onDone, (error: unknown) => tell(asProblem(error)))
               .finally(() => setProgress(null));
           }}
         />
