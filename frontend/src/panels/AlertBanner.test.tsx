@@ -8,7 +8,7 @@ import { missionAt } from "../state/mission";
 import { look } from "../state/moment";
 import { open } from "../state/open";
 import type { MissionEvent } from "../wire";
-import { ended, phase, record, someReason, someSpec, started } from "../wire/examples";
+import { CRAFT, ended, phase, record, someCraftStatus, someReason, someSpec, someStatus, started } from "../wire/examples";
 import { AlertBanner } from "./AlertBanner";
 
 const raised: MissionEvent = {
@@ -74,4 +74,20 @@ it("acknowledges nothing by the second tap on the alert before", () => {
   expect(send).toHaveBeenCalledOnce();
   tap(5000);
   expect(send).toHaveBeenCalledTimes(2);
+});
+
+it("tells how much the receiver loses now, and how much it lost when that is looked back at", () => {
+  const losing: MissionEvent = { ...raised, topic: "receiver", craft_id: CRAFT, reason: { code: "samples_lost", lost_percent: 8 } };
+  offered(null, losing);
+  const status = someStatus({ crafts: [someCraftStatus({ craft_id: CRAFT, receiver: "ok", receiver_lost_percent: 31 })] });
+  const shown = () => document.querySelector("[data-testid=alert-banner]")!.textContent;
+  act(() => {
+    live.value = { ...live.value, status: { value: status, atMs: performance.now() } };
+  });
+  look(null);
+  act(() => render(<AlertBanner />, document.body));
+  expect(shown()).toMatch(/lost 31\s%/);
+  look(5);
+  act(() => render(<AlertBanner />, document.body));
+  expect(shown()).toMatch(/lost 8\s%/);
 });

@@ -2,7 +2,8 @@
 import { computed } from "@preact/signals";
 import { send } from "../commands/send";
 import { type MessageKey, personName, reasonRemedy, reasonText, t } from "../i18n";
-import { isOpen, sortAlerts } from "../state/alerts";
+import { atPresent, isOpen, sortAlerts } from "../state/alerts";
+import { live, source } from "../state/connection";
 import { shownCraftAlerts } from "../state/craftAlerts";
 import type { Alert } from "../state/mission";
 import { cursor, liveMission } from "../state/moment";
@@ -12,7 +13,8 @@ import { mission, shownTimeMs } from "../state/shown";
 import { formatAge } from "../units/quantities";
 import { ProblemNote } from "./ProblemNote";
 
-const all = computed(() => [...mission.value.alerts, ...shownCraftAlerts.value]);
+const statusShown = computed(() => (cursor.value === null && source.value?.happensNow ? live.value.status : null));
+const all = computed(() => atPresent([...mission.value.alerts, ...shownCraftAlerts.value], statusShown.value?.value ?? null));
 export const openAlerts = computed(() => all.value.filter(isOpen));
 /** Of the mission while it lasts: what a craft without one says nobody acknowledges, it goes by itself. */
 export const acknowledgeable = ({ id }: Alert) =>
