@@ -144,7 +144,7 @@ def localize(
             scatter = _scatter(chosen, frame, region)
             chosen, expected = _with_sigma(chosen, scatter.sigma_deg), scatter.outlier_probability
         rate = expected if outliers is None else outliers
-        answer = _localize(chosen, frame, region, rate, threshold, _known_estimator(estimator), joint)
+        answer = _localize(chosen, frame, region, rate, threshold, _known_estimator(estimator), joint, whole)
     except (RecordingError, HeadingError, PlannerError, ValueError) as error:
         stop(error)
     if json_:
@@ -252,12 +252,15 @@ def _localize(
     threshold: float,
     estimator: Estimator,
     joint: bool,
+    stations: bool,
 ) -> dict[str, Any]:
+    """stations: the tags of the bearings are the stations that took them, each with errors of its own."""
     bearings: list[Bearing] = []
     for b in recorded:
         x, y = frame.to_enu(b.place)
         sigma = math.radians(_own_sigma_deg(b) if joint else b.sigma_deg)
-        bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), sigma, outliers))
+        source = (b.tag or "") if stations else ""
+        bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), sigma, outliers, source=source))
     problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0), estimator=estimator)
     belief = _fold_joint(problem, bearings, outliers) if joint else _fold(problem, bearings, outliers)
     judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
@@ -320,14 +323,20 @@ def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> G
     return None if agreeing < min(2, len(bearings)) else belief
 
 
-def _source(errors: SourceErrors) -> dict[str, float | int]:
+def _source(errors: SourceErrors) -> dict[str, float | int | str | None]:
+    """name: of the station, where the file tells."""
     return {
+        "name": errors.source or None,
         "bearings": errors.bearings,
         "bias_deg": round(-math.degrees(errors.bias), 2),
         "bias_std_error_deg": round(math.degrees(errors.bias_sd), 2),
         "sigma_scale": round(errors.scale, 3),
         "outlier_rate": round(errors.outlier_rate, 3),
     }
+
+
+def _of(name: str | None) -> str:
+    return "" if name is None else f" of {name}"
 
 
 def _text(answer: dict[str, Any]) -> str:
@@ -342,8 +351,9 @@ def _text(answer: dict[str, Any]) -> str:
         f"from {answer['bearings']} bearing{'s' if answer['bearings'] != 1 else ''}"
     ]
     lines += [
-        f"all bearings turned clockwise by {round(one['bias_deg']):+d} ± {one['bias_std_error_deg']:.0f} degrees, "
-        f"which is taken into account; their errors are {one['sigma_scale']:.1f} times what was stated"
+        f"all bearings{_of(one['name'])} turned clockwise by {round(one['bias_deg']):+d} ± "
+        f"{one['bias_std_error_deg']:.0f} degrees, which is taken into account; their errors are "
+        f"{one['sigma_scale']:.1f} times what was stated"
         for one in answer["sources"]
     ]
     lines.append("localized" if answer["localized"] else f"not yet localized: {' '.join(answer['not_yet'])}")

@@ -66,6 +66,25 @@ def test_what_a_krakens_page_held_is_read_as_an_import_reads_it(tmp_path: Path) 
     assert answer["bearings"] == 2
 
 
+def test_each_station_of_a_krakens_log_has_a_compass_of_its_own(tmp_path: Path) -> None:
+    heard = "{ms}, {deg}, 80.5, -31.2, 868300000, UCA, 412, {station}, {lat}, {lon}, 0, 0, GPS, R, R, R, R"
+    around = [(300 + 600 * math.cos(turn), 400 + 600 * math.sin(turn)) for turn in range(6)]
+    off = {"east": (-14.0, around[:3]), "west": (14.0, around[::2])}
+    lines: list[str] = []
+    for station, (bias, places) in off.items():
+        for x, y in places:
+            place, deg = FRAME.to_geo(x, y), (bearing_to(x, y, 300.0, 400.0) + bias) % 360.0
+            ms = 1_700_000_000_000 + 120_000 * len(lines)
+            lines.append(heard.format(ms=ms, deg=deg, station=station, lat=place.lat, lon=place.lon))
+    path = tmp_path / "kraken.csv"
+    path.write_text("\n".join(lines))
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+    biases = {one["name"]: one["bias_deg"] for one in answer["sources"]}
+    assert biases["west"] > 5.0
+    assert biases["east"] < -2.0
+    assert "all bearings of west turned clockwise by +" in CliRunner().invoke(APP, [str(path)]).stdout
+
+
 def test_bearings_on_both_sides_of_the_dateline_cross_there(tmp_path: Path) -> None:
     path = tmp_path / "bearings.csv"
     path.write_text("lat,lon,bearing_deg\n0,179.999,45\n0,-179.995,315\n")
