@@ -13,6 +13,7 @@ from backend.cli.edge import print_json, remark, stop
 from backend.search.localization import localization
 from backend.search.source_priors import unknown_craft
 from hardware.readings import Place
+from planner.study.error_worlds import ROWS
 from planner.study.errors import StudyError
 from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
@@ -145,6 +146,10 @@ def row_claims(
 
 def _check(row: str, model: Model, flights: int, told: bool, planner: str, shared: bool) -> TruthPlanner:
     """The planner's name, known. StudyError for options that do not go together."""
+    if row not in (known := (*ROWS.by_name, *TAGS, *SPEEDS)):
+        raise StudyError(f"there is no row {row!r}: choose one of {', '.join(known)}")
+    if flights and (model != "joint" or row in TAGS or row in SPEEDS):
+        raise StudyError("--flights goes with the joint model of one emitter that stays where it is")
     if told and (model != "joint" or flights or row in TAGS):
         raise StudyError("--told goes with the joint model of one emitter, and without --flights")
     places = truth_planner(planner)
