@@ -543,6 +543,7 @@ export const de: Record<MessageKey, string> = {
   "whatIf.antenna.check": "War es die gemessene Antenne?",
   "whatIf.antenna.fits": "{count} Drehungen sprechen nicht gegen das Diagramm.",
   "whatIf.antenna.take": "Das Diagramm dieser Drehungen nehmen",
+  "whatIf.antenna.save": "Ihr Diagramm sichern",
   "whatIf.planner": "Planer",
   "whatIf.planner.flown": "wie geflogen",
   "whatIf.planner.halving": "Simulation, Halbieren",

@@ -150,6 +150,7 @@ export const pagesEn = {
   "whatIf.antenna.check": "Was it the measured antenna?",
   "whatIf.antenna.fits": "{count} sweeps do not speak against the pattern.",
   "whatIf.antenna.take": "Use the pattern of these sweeps",
+  "whatIf.antenna.save": "Save their pattern",
   "whatIf.planner": "Planner",
   "whatIf.planner.flown": "as flown",
   "whatIf.planner.halving": "rollout, sequential halving",

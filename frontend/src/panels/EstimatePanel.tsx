@@ -5,6 +5,7 @@ import { type MessageKey, reasonText, t } from "../i18n";
 import { polygonsOf } from "../state/areas";
 import { shownBelief } from "../state/belief";
 import { chargeAfter, flightBudget, lasts } from "../state/budget";
+import { source } from "../state/connection";
 import { distanceM, extent, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
 import { reviewTimeMs } from "../state/moment";
@@ -18,6 +19,7 @@ import { vehicle } from "../state/vehicle";
 import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength, formatNumber, signedDegrees } from "../units/quantities";
 import type { Area, MissionEnded, SourceErrors } from "../wire";
+import { AntennaDoubt } from "./AntennaDoubt";
 import { Claim } from "./Claim";
 import { copyText } from "./clipboard";
 import { Icon } from "./Icon";
@@ -169,7 +171,7 @@ const endWords = ({ outcome, reason }: MissionEnded): string =>
   outcome === "failed" ? `${t("outcome.failed")}: ${reasonText(reason)}` : reasonText(reason);
 
 export function EstimatePanel() {
-  const { belief, spec, ended } = mission.value;
+  const { belief, spec, ended, missionId, emitterId, bearings } = mission.value;
   const units = settings.value.units;
   const fact = belief?.fact;
   const estimate = fact?.estimate;
@@ -236,6 +238,9 @@ export function EstimatePanel() {
         <p class="outcome" data-testid="outcome" data-outcome={ended.fact.outcome}>
           {endWords(ended.fact)}
         </p>
+      )}
+      {ended && missionId && emitterId && bearings.length > 1 && source.value?.keptByServer && (
+        <AntennaDoubt missionId={missionId} emitterId={emitterId} />
       )}
     </section>
   );

@@ -12,6 +12,7 @@ import { countedThen, flownBearings, supposed, supposedHere } from "../state/sup
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
+import { SavePattern } from "./AntennaDoubt";
 import { ProblemBox } from "./ProblemNote";
 import { FurtherWishes, furtherWishes, isBudgetUnread, KeepVariant } from "./WhatIfMore";
 
@@ -79,13 +80,13 @@ function Steps({ answer }: { answer: WhatIf }) {
 }
 
 /** Whether the flight's own sweeps fit the antenna that was measured, and the pattern that they show instead. */
-function Review({ missionId }: { missionId: string }) {
+function Review({ missionId, emitterId }: { missionId: string; emitterId: string }) {
   const [found, setFound] = useState<AntennaReview | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const ask = async () => {
     setProblem(null);
     try {
-      setFound(await api.antennaReview(missionId));
+      setFound(await api.antennaReview(missionId, emitterId));
     } catch (error) {
       setProblem(asProblem(error));
     }
@@ -103,14 +104,17 @@ function Review({ missionId }: { missionId: string }) {
         </p>
       )}
       {proposed && (
-        <button
-          type="button"
-          class="small"
-          data-testid="antenna-review-take"
-          onClick={() => (pattern.value = new File([proposed.text], proposed.filename, { type: "application/json" }))}
-        >
-          {t("whatIf.antenna.take")}
-        </button>
+        <>
+          <button
+            type="button"
+            class="small"
+            data-testid="antenna-review-take"
+            onClick={() => (pattern.value = new File([proposed.text], proposed.filename, { type: "application/json" }))}
+          >
+            {t("whatIf.antenna.take")}
+          </button>
+          <SavePattern proposed={proposed} />
+        </>
       )}
     </div>
   );
@@ -229,7 +233,7 @@ export function WhatIfPanel() {
           />
         </label>
         <Antenna />
-        <Review missionId={missionId} key={missionId} />
+        {emitterId && <Review missionId={missionId} emitterId={emitterId} key={missionId + emitterId} />}
         <label>
           {t("whatIf.planner")}
           <select

@@ -168,7 +168,8 @@ export const importRecording = (id: string, form: FormData) =>
 export const readExported = (text: string) =>
   json<ExportedMission>("/recordings/read", { method: "POST", headers: { "content-type": "application/json" }, body: text }, LONG_MS);
 
-export const antennaReview = (id: string) => json<AntennaReview>(`${missionPath(id)}/antenna`);
+export const antennaReview = (id: string, emitterId: string) =>
+  json<AntennaReview>(`${missionPath(id)}/antenna?emitter=${encodeURIComponent(emitterId)}`);
 export const whatIf = (id: string, wanted: WhatIfRequest) => json<WhatIf>(`${missionPath(id)}/what-if`, withBody("POST", wanted));
 
 export const importArea = (text: string, filename: string) => json<AreaImport>("/areas", withBody("POST", { text, filename }));
