@@ -1,3 +1,4 @@
+import { readFileSync } from "node:fs";
 import { expect, it } from "vitest";
 import { localProblem, RequestFailed } from "../sources/problem";
 import { locale } from "../units/locale";
@@ -12,6 +13,17 @@ it("every field of the form exists in the specification, so none edits nothing",
   const paths = sections.flatMap((s) => s.fields.map((field) => field.path));
   const ofEmitter = ["label", "frequency_hz", "kind"].map((name) => `${EMITTER}.${name}`);
   for (const path of [...paths, ...ofEmitter, PRIOR]) expect(get(someSpec(), path), path).not.toBeUndefined();
+});
+
+it("every choice offers all that the specification may hold, so that none is shown as nothing", () => {
+  const schemas = JSON.parse(readFileSync("src/wire/openapi.json", "utf8")).components.schemas;
+  const choices = sections.flatMap((s) => s.fields).filter((field) => field.kind === "choice");
+  expect(choices.length).toBeGreaterThan(5);
+  for (const { path, options } of choices) {
+    const [section, name] = path.split(".") as [string, string];
+    const known: string[] | undefined = schemas[{ planner: "PlannerSpec", sensor: "SensorSpec" }[section]!].properties[name].enum;
+    expect(options.map(({ value }) => value).sort(), path).toEqual(known?.toSorted());
+  }
 });
 
 const asked = (spec: MissionSpec) =>

@@ -185,6 +185,7 @@ export const sections: readonly Section[] = [
           { value: "crn", label: null },
           { value: "deterministic", label: null },
           { value: "pmc", label: null },
+          { value: "quasi_random", label: null },
         ],
         more: true,
       },
