@@ -15,6 +15,7 @@ import typer
 
 from backend.bearing_file import kraken_in
 from backend.cli.edge import print_json, remark, stop
+from backend.cli.localize_mission import exported_in, localize_mission
 from backend.search.reported import compass_share_deg
 from backend.search.source_priors import LEAST_OUTLIERS, unknown_errors
 from backend.settings import settings_of
@@ -55,6 +56,8 @@ USUAL_OUTLIERS = 0.1
 """As a mission expects unless told otherwise."""
 MEDIAN: Estimator = "geometric_median"
 """The place with the least expected error, the figure that is stated beside it."""
+USUAL = ("joint", MEDIAN, 10.0)
+"""Errors, estimator and threshold of who says nothing."""
 
 
 def localize(
@@ -62,7 +65,8 @@ def localize(
         Path,
         typer.Argument(
             help="UAV-RT bearing file, CSV with columns lat, lon (or easting, northing, utm_zone), bearing_deg[, "
-            "sigma_deg], or a KrakenSDR's log."
+            "sigma_deg], a KrakenSDR's log, or a mission.json that Crossfix exported: believed as it was in flight, "
+            "area, compass and all."
         ),
     ],
     area: Annotated[
@@ -108,7 +112,10 @@ def localize(
     threshold: Annotated[
         float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
     ] = 10.0,
-    tag: Annotated[str | None, typer.Option(help="Use this tag's bearings when the file holds several tags.")] = None,
+    tag: Annotated[
+        str | None,
+        typer.Option(help="Use this tag's bearings (of a mission: this emitter's) where there are several."),
+    ] = None,
     magnetic: Annotated[
         datetime | None,
         typer.Option(
@@ -129,6 +136,11 @@ def localize(
     Example: crossfix localize bearings.csv --range 800 --json
     """
     try:
+        if (mission := exported_in(file)) is not None:
+            given = (area, range_, sigma, outliers, magnetic)
+            _nothing_else(any(one is not None for one in given), (errors, estimator, threshold) != USUAL)
+            _answered(localize_mission(mission, tag), json_)
+            return
         table = read_table(file)
         kraken = kraken_in(table)
         recorded = kraken or bearings_in(table, sigma or DEFAULT_SIGMA_DEG)
@@ -147,10 +159,19 @@ def localize(
         answer = _localize(chosen, frame, region, rate, threshold, _known_estimator(estimator), joint, whole)
     except (RecordingError, HeadingError, PlannerError, ValueError) as error:
         stop(error)
+    _answered(answer, json_)
+
+
+def _answered(answer: dict[str, Any], json_: bool) -> None:
     if json_:
         print_json(answer)
     else:
         typer.echo(_text(answer))
+
+
+def _nothing_else(*asked: bool) -> None:
+    if any(asked):
+        raise ValueError("a mission says itself what it searches with: give none of these options but --tag and --json")
 
 
 def _known_estimator(name: str) -> Estimator:

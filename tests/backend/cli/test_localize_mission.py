@@ -1,0 +1,110 @@
+"""`crossfix localize mission.json`: what the flight said, to the last digit."""
+
+from __future__ import annotations
+
+import json
+import math
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from backend.cli.localize import localize
+from backend.events import BearingMeasured, CraftSource, MissionDrafted, MissionStarted, PersonSource, Recorded
+from backend.search.localization import localization
+from backend.spec import EmitterSpec, MissionSpec, Place, Polygon, SensorSpec
+from backend.wire.export import journal_json
+from hardware.frame import LocalFrame
+
+APP = typer.Typer()
+APP.command()(localize)
+HOME = Place(lat=50.6, lon=7.2)
+FRAME = LocalFrame(HOME)
+EMITTER = (30.0, 120.0)
+CORNERS = [FRAME.to_geo(x, y) for x, y in ((-150, 0), (150, 0), (150, 200), (-150, 200), (-150, 0))]
+RING = [(place.lon, place.lat) for place in CORNERS]
+SPEC = MissionSpec(name="m", area=Polygon(coordinates=[RING]), sensor=SensorSpec(bearing_errors="joint"))
+
+
+def bearing(number: int, x: float, y: float, by: CraftSource | PersonSource, off_deg: float) -> BearingMeasured:
+    return BearingMeasured(
+        emitter_id="emitter-1",
+        source=by,
+        bearing_id=f"b{number}",
+        sweep_id=None,
+        place_number=number,
+        place=FRAME.to_geo(x, y),
+        altitude_amsl_m=140.0,
+        bearing_deg=(math.degrees(math.atan2(EMITTER[0] - x, EMITTER[1] - y)) + off_deg) % 360,
+        sigma_deg=6.0,
+        heading_sigma_deg=4.0,
+        quality=0.9,
+        peaks=[],
+        snr_db=20.0,
+        drift_m=0.2,
+        binned_db=[],
+        fitted_db=[],
+    )
+
+
+CRAFT, ANNA = CraftSource(craft_id="craft-1"), PersonSource(name="anna")
+BEARINGS = [
+    bearing(1, 0, 0, CRAFT, 2.0),
+    bearing(2, 140, 60, ANNA, -9.0),
+    bearing(3, -100, 150, CRAFT, 2.0),
+    bearing(4, 60, 190, ANNA, -9.0),
+]
+
+
+def exported(tmp_path: Path, spec: MissionSpec = SPEC) -> str:
+    drafted = MissionDrafted(spec=spec)
+    started = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
+    at = datetime(2026, 11, 30, tzinfo=UTC)
+    recorded = [
+        Recorded(seq=seq, mission_id="m", at_utc=at + timedelta(seconds=seq), event=event)
+        for seq, event in enumerate([drafted, started, *BEARINGS], start=1)
+    ]
+    path = tmp_path / "mission.json"
+    path.write_text(journal_json(recorded, {}))
+    return str(path)
+
+
+def test_a_mission_is_believed_as_in_flight(tmp_path: Path) -> None:
+    fact, _ = localization(SPEC, HOME).belief_fact(BEARINGS)
+    path = exported(tmp_path)
+    answer = json.loads(CliRunner().invoke(APP, [path, "--json"]).stdout)
+    assert fact.estimate is not None
+    assert answer["expected_rmse_m"] == fact.estimate.expected_rmse_m
+    assert answer["estimate"] == {"lat": fact.estimate.lat, "lon": fact.estimate.lon}
+    assert [one["name"] for one in answer["sources"]] == ["craft-1", "anna"]
+    assert [one["bias_deg"] for one in answer["sources"]] == [one.bias_deg for one in fact.sources]
+    assert answer["localized"] == fact.localized
+    assert "all bearings of anna turned clockwise by -" in CliRunner().invoke(APP, [path]).stdout
+
+
+def test_one_of_several_emitters_is_named(tmp_path: Path) -> None:
+    (first,) = SPEC.emitters
+    other = EmitterSpec(emitter_id="other", label="vixen", frequency_hz=1e8)
+    path = exported(tmp_path, SPEC.model_copy(update={"emitters": [first, other]}))
+    refused = CliRunner().invoke(APP, [path])
+    assert refused.exit_code == 2
+    assert "vixen: choose one with --tag" in refused.stderr
+    assert json.loads(CliRunner().invoke(APP, [path, "--tag", "1", "--json"]).stdout)["bearings"] == 4
+    assert json.loads(CliRunner().invoke(APP, [path, "--tag", "vixen", "--json"]).stdout)["bearings"] == 0
+
+
+@pytest.mark.parametrize("option", [("--sigma", "5"), ("--errors", "independent"), ("--threshold", "5")])
+def test_what_a_mission_says_itself_is_not_asked_otherwise(tmp_path: Path, option: tuple[str, str]) -> None:
+    refused = CliRunner().invoke(APP, [exported(tmp_path), *option])
+    assert refused.exit_code == 2
+    assert "a mission says itself what it searches with" in refused.stderr
+
+
+def test_other_json_is_named_as_no_mission(tmp_path: Path) -> None:
+    path = tmp_path / "mission.geojson"
+    path.write_text('{"type": "FeatureCollection", "features": []}')
+    refused = CliRunner().invoke(APP, [str(path)])
+    assert refused.exit_code == 2
+    assert "take the journal (JSON) or the CSV" in refused.stderr
