@@ -302,6 +302,8 @@ def _verdict(state: SearchState, because: Reason) -> tuple[Literal["localized", 
         return "localized", search.LocalizedAgainst(against, sum(belief.bearings for belief in beliefs))
     if isinstance(because, search.Localized | search.LocalizedAgainst):
         return "not_localized", NoLongerLocalized(state.not_yet)
+    if isinstance(because, NotLocalized):  # a craft that went home for it says so itself
+        because = because.because
     return "not_localized", NotLocalized(because, state.not_yet)
 
 

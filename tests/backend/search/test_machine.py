@@ -31,7 +31,7 @@ from backend.events import (
     MissionEnded,
     RecordingImported,
 )
-from backend.reasons import NoLongerLocalized, NotLocalized, flight, refusals
+from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals
 from backend.reasons.search import BeliefBroke, HeadingsAskew, Localized, LocalizedAgainst
 from backend.search.effects import SearchEffect, SearchElsewhere, UpdateBelief
 from backend.search.inputs import (
@@ -317,11 +317,16 @@ def ended(walk: SearchWalk) -> MissionEnded:
     return found
 
 
-def test_the_end_says_honestly_what_came_of_it() -> None:
+@pytest.mark.parametrize("because", [NO_ANSWER, NotLocalized(NO_ANSWER, (NOT_YET,))])
+def test_the_end_says_honestly_and_once_what_came_of_it(because: Reason) -> None:
+    """A craft that goes home since it found nothing says so with the same words."""
     unheard = SearchWalk().to("open")
     unheard.believe()
-    unheard.give(SearchOver(NO_ANSWER))
+    unheard.give(SearchOver(because))
     assert (ended(unheard).outcome, ended(unheard).reason) == ("not_localized", NotLocalized(NO_ANSWER, (NOT_YET,)))
+
+
+def test_the_time_of_a_mission_is_until_it_was_localized() -> None:
     found = SearchWalk().to("open")
     found.arrive(bearing(1, source=PERSON))
     found.believe(localized=True)
