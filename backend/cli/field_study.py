@@ -11,6 +11,7 @@ from typing import Any, cast, get_args
 import typer
 
 from backend.cli.edge import print_json, remark
+from backend.cli.field_gyration import GYRATION
 from backend.cli.field_legs import Listens
 from backend.cli.field_lessons import taught
 from backend.cli.field_missions import AS_FLOWN, PLANNERS, FieldMission, FieldOptions, FieldStudy, Turns
@@ -50,6 +51,8 @@ class FieldWays:
         for planner in self.planners:
             if planner == "crossfix" and not self.turns and not self.listens:
                 yield planner, *AS_FLOWN
+            elif planner == GYRATION:  # it never stops to turn, and goes round wherever it is: there is one way
+                yield planner, "whole", "places"
             else:
                 yield from product((planner,), self.turns or ("whole",), self.listens or ("places",))
 

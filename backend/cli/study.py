@@ -135,6 +135,8 @@ def run(
     if scenario is not None and FIELD_WORLD in scenario:
         if foreign := [name for name in CELL_OPTIONS if _is_given(context, name)]:
             _refuse(f"--{foreign[0].replace('_', '-')} means nothing to {FIELD_WORLD}: leave it out", json_)
+        if compass_bias is not None and _is_given(context, "compass_sd"):
+            _refuse("--compass-bias is every flight's error instead of --compass-sd: give one of them", json_)
         try:
             ways = FieldWays(planner or ["crossfix"], turns or (), listens or ())
             setting = FieldSetting(turn_rate, compass_sd, compass_bias, antenna, flights)

@@ -49,6 +49,9 @@ def test_crossfix_does_as_in_new_missions_unless_asked_otherwise():
         ("crossfix", "sector", "places"),
         ("crossfix", "whole", "places"),
     ]
+    assert list(FieldWays(["gyration"], ["sector", "whole"], ["never_stopping"]).rows()) == [
+        ("gyration", "whole", "places")
+    ]
     suggested, flown_so = suggested_mission(HOME).sensor, mission_of(FieldOptions("crossfix", *AS_FLOWN)).sensor
     for name in ("sector_turns", "listen_on_the_way", "swing_on_the_way", "never_stop"):
         assert getattr(flown_so, name) == getattr(suggested, name)
@@ -189,6 +192,7 @@ def test_a_row_is_the_same_here_and_on_a_dask_cluster():
         (("--listens", "never"), "--listens"),
         (("--compass-sd", "-1"), "--compass-sd"),
         (("--compass-bias", "-8"), "--compass-bias"),
+        (("--compass-bias", "8", "--compass-sd", "4"), "give one of them"),
         (("--antenna", "dish"), "--antenna"),
     ],
 )
