@@ -2,7 +2,8 @@
 
 PX4 holds at a place that it reckons ahead while it still flies. It comes to rest metres beside that place and then
 creeps there, so a second order to stay follows as soon as it is slow. While it brakes it turns its nose to that place,
-at up to 70 degrees a second, from a swing all the way round, so the nose is ordered to stay where it is.
+at up to 70 degrees a second, from a swing all the way round, so the nose is ordered to stay where it is. The order to
+stay takes that back, and over it PX4 is carried metres on: the nose is ordered once more.
 """
 
 from __future__ import annotations
@@ -61,7 +62,8 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
     await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
     brakes = Deadline(monitor.clock, BRAKES_S, BRAKES_WALL_S)
     rests = Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S)
-    if snapshot.fastest_m_s > NEVER_FAST_M_S and dialect.hold_turns_nose:
+    turns_nose = snapshot.fastest_m_s > NEVER_FAST_M_S and dialect.hold_turns_nose
+    if turns_nose:
         await _keep_nose(guidance, manoeuvre)
     hover, hovers = Hover(), False
 
@@ -84,6 +86,8 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
         await guidance.until(manoeuvre, rests, lambda: decided() or nearly_rests())
         if nearly_rests():
             await _said(guidance, manoeuvre, lambda: stay)
+            if turns_nose:
+                await _keep_nose(guidance, manoeuvre)
     if await guidance.until(manoeuvre, rests, decided):
         return hovers
     monitor.announce(StillMoving(snapshot.speed_m_s or 0.0))

@@ -25,6 +25,9 @@ CREEPS_M = 2.2
 """So near to that stop point it is all but at rest, and needs some ten seconds for the rest of the way."""
 FACES_ITS_STOP_M_S = 2.5
 """Until it has braked to this it turns its nose to its stop point, unless it was given a yaw."""
+CARRIED_S, CARRIED_M_S = 1.2, 2.0
+"""Told to stop while it begins to fly back to a stop point it goes on for so long, and comes back: it smooths its way.
+Then it is farther from its place than PX4's NAV_ACC_RAD and turns its nose there, unless it was given a yaw."""
 REPOSITION_KEPT = 0.5
 """Seconds for which a reposition that came in another mode is carried out when HOLD is entered (PX4's loiter.cpp)."""
 
@@ -104,12 +107,15 @@ class Px4(Firmware):
         self._take_off_up = 0.0
         self._kept: tuple[float, Command] | None = None
         self._faces_its_stop = False
+        self._carried: tuple[float, float, float] | None = None
+        """Until when it is carried on, and where it was told to stop."""
+        self._given_yaw = False
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
     def enter(self, mode: str) -> None:
         flight = self.flight
-        self._faces_its_stop = False
+        self._faces_its_stop, self._carried = False, None
         if mode == "RETURN":
             p = self.parameters
             flight.return_home(p["RTL_RETURN_ALT"], p["MPC_XY_CRUISE"], p["RTL_DESCEND_ALT"], p["RTL_LAND_DELAY"])
@@ -128,6 +134,8 @@ class Px4(Firmware):
         if self._faces_its_stop and self._speed() < FACES_ITS_STOP_M_S:
             self._faces_its_stop = False
             flight.turn_by(0.0, self.parameters["MPC_YAWRAUTO_MAX"])
+        if self._carried is not None and self.time > self._carried[0]:
+            self._come_back(*self._carried[1:])
         if self.mode == "TAKEOFF":
             if flight.task == "idle":
                 flight.take_off(self._take_off_up)
@@ -221,7 +229,9 @@ class Px4(Firmware):
         if command.lat is None and flies and math.isnan(command.z):  # a yaw alone
             if not self._spoiled_yaw():
                 self.flight.turn_to(math.degrees(command.p4), self.parameters["MPC_YAWRAUTO_MAX"])
+                self._given_yaw = True
             return
+        self._carried = None
         if command.lat is not None and command.lon is not None:
             place = self.home.to_local(command.lat, command.lon)
         up = command.z - self.home.amsl_m if not math.isnan(command.z) else nav.up
@@ -236,13 +246,27 @@ class Px4(Firmware):
             self.flight.turn_to(math.degrees(math.atan2(place[1] - nav.east, place[0] - nav.north)), limit)
 
     def _pause(self) -> None:
-        flight = self.flight
+        flight, nav = self.flight, self.navigation
+        was, flew = flight.demand, flight.task == "fly"
         flight.stop(STOP_REACH, CREEPS_M)
-        self._faces_its_stop = self._speed() > FACES_ITS_STOP_M_S
+        self._given_yaw, self._carried = False, None
+        slow = self._speed() < FACES_ITS_STOP_M_S
+        if flew and slow and math.hypot(was.north - nav.north, was.east - nav.east) > CREEPS_M:
+            self._carried = self.time + CARRIED_S, flight.demand.north, flight.demand.east
+            flight.fly_to(was.north, was.east, flight.demand.up, CARRIED_M_S)
+        self._faces_its_stop = not slow
         if self._faces_its_stop:
             copter = flight.copter
             course = math.degrees(math.atan2(copter.v_east, copter.v_north))
             flight.turn_to(course, self.parameters["MPC_YAWRAUTO_MAX"])
+
+    def _come_back(self, north: float, east: float) -> None:
+        flight, nav = self.flight, self.navigation
+        self._carried = None
+        flight.fly_to(north, east, flight.demand.up, CARRIED_M_S)
+        if not self._given_yaw:
+            back = math.degrees(math.atan2(east - nav.east, north - nav.north))
+            flight.turn_to(back, self.parameters["MPC_YAWRAUTO_MAX"])
 
     def _speed(self) -> float:
         """Over ground, m/s."""

@@ -106,7 +106,8 @@ async def test_a_nose_that_px4_would_turn_is_told_to_stay_once_the_hold_is_surel
     assert all(flying.link.fields[-1][f"param{number}"] is None for number in (5, 6, 7))
     await moves(flying, 0.1, SETTLED_S + 0.5)
     await asyncio.wait_for(ordered, 1.0)
-    assert flying.link.sent == [REPOSITION] * 3
+    assert flying.link.sent == [REPOSITION] * 4
+    assert [fields["param4"] for fields in flying.link.fields[-2:]] == [None, pytest.approx(2.0)], "and where it stays"
 
 
 async def test_a_nose_is_left_alone_by_a_hold_of_a_vehicle_that_hovers(flying: Scene) -> None:

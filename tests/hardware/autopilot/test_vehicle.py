@@ -195,6 +195,23 @@ async def test_what_stops_a_take_off_is_sent_before_a_heartbeat_has_said_that_th
     assert mode in ({"hold": ("HOLD", "BRAKE"), "return_home": ("RETURN", "RTL", "LAND")}[stop])
 
 
+async def test_a_px4_that_is_told_to_stay_as_it_turns_back_keeps_its_nose(px4: Rig) -> None:
+    await px4.vehicle.take_off(10.0)
+    telemetry = px4.vehicle.telemetry()
+    assert telemetry.home is not None
+    assert telemetry.altitude_amsl_m is not None
+    far = LocalFrame(telemetry.home).to_geo(0.0, 300.0)
+    flight = asyncio.create_task(px4.vehicle.goto(far, telemetry.altitude_amsl_m, 7.0, 90.0))
+    await px4.until(lambda: (px4.vehicle.telemetry().velocity_north_m_s or 0.0) > 6.0)
+    began_s = px4.clock.now()
+    await px4.vehicle.hold()
+    with pytest.raises(VehicleError, match="replaced by the hold"):
+        await flight
+    await px4.clock.sleep(6.0)
+    headings = [sample.heading_deg for sample in px4.vehicle.headings(began_s + 1.0)]
+    assert max(abs(math.remainder(heading - headings[0], 360.0)) for heading in headings) < 6.0
+
+
 async def test_two_holds_at_once_both_succeed(rig: Rig) -> None:
     await rig.vehicle.take_off(10.0)
 
