@@ -56,7 +56,7 @@ class Snapshot:
     """As the last heartbeat said."""
     heartbeat_at_s: float | None = None
     arming_at_s: float = -math.inf
-    """When the autopilot last agreed to arm."""
+    """When the autopilot last agreed to arm, or was last ordered to and has not refused."""
     landed_state: int = _UNDEFINED
     prearm_present: bool | None = None
     prearm_healthy: bool | None = None
@@ -115,7 +115,7 @@ class Snapshot:
 
     @property
     def disarmed(self) -> bool:
-        """Certainly: a heartbeat of once a second does not yet know that the autopilot has just agreed to arm."""
+        """Certainly: a heartbeat of once a second does not yet know that the autopilot has just been armed."""
         return self.armed is False and (self.heartbeat_at_s or -math.inf) >= self.arming_at_s + ARMING_S
 
     @property

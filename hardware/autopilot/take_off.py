@@ -43,6 +43,18 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
     guidance.spot = (guidance.here()[0], _amsl_of(guidance, altitude_relative_m))
 
 
+async def _arm(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
+    """From the order on it may be armed: what stops a take-off must reach it though its answer has not come yet."""
+    snapshot, clock = guidance.monitor.snapshot, guidance.monitor.clock
+    before_s, snapshot.arming_at_s = snapshot.arming_at_s, clock.now()
+    try:
+        await guidance.send(manoeuvre, arm(), guidance.monitor.dialect.take_off_modes, "arming")
+    except (CommandDenied, OutOfMode):
+        snapshot.arming_at_s = before_s
+        raise
+    snapshot.arming_at_s = clock.now()
+
+
 async def _hear_home(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
     """Arming has set home, and a moment later heights are above that."""
     snapshot = guidance.monitor.snapshot
@@ -77,8 +89,7 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
             if snapshot.custom_mode not in dialect.before_take_off.modes:
                 await guidance.select(manoeuvre, dialect.before_take_off)
             if not snapshot.armed:
-                await guidance.send(manoeuvre, arm(), dialect.take_off_modes, "arming")
-                snapshot.arming_at_s = clock.now()
+                await _arm(guidance, manoeuvre)
                 await _hear_home(guidance, manoeuvre)
                 stood_amsl_m = guidance.here()[1]
             take_off = dialect.take_off(relative_m, _amsl_of(guidance, relative_m))

@@ -13,7 +13,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from hardware.autopilot.connect import connect_vehicle
-from hardware.autopilot.messages import HOME_POSITION_ID, TAKE_OFF, message_interval
+from hardware.autopilot.messages import ARM, HOME_POSITION_ID, TAKE_OFF, message_interval
 from hardware.autopilot.snapshot import Fields, Snapshot
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
@@ -193,6 +193,21 @@ async def test_what_stops_a_take_off_is_sent_before_a_heartbeat_has_said_that_th
         await take_off
     mode = (await slow.sim.order("truth"))["mode"]
     assert mode in ({"hold": ("HOLD", "BRAKE"), "return_home": ("RETURN", "RTL", "LAND")}[stop])
+
+
+async def test_what_stops_a_take_off_is_sent_before_the_answer_to_the_arming_has_come(slow: Rig) -> None:
+    """A real PX4 over 250 ms stood armed for 11 s after its return was ordered: nothing was sent to it."""
+    await slow.clock.sleep(8.0)
+    await slow.sim.order("link_delay", seconds=0.5)
+    take_off = asyncio.create_task(slow.vehicle.take_off(100.0))
+    async with asyncio.timeout(60):
+        while not [number for _, number in (await slow.sim.order("commands"))["commands"] if number == ARM]:  # noqa: ASYNC110 (another process)
+            await asyncio.sleep(0)
+    assert slow.vehicle.telemetry().armed is None
+    await slow.vehicle.land()
+    with pytest.raises(VehicleError, match="replaced by"):
+        await take_off
+    assert (await slow.sim.order("truth"))["mode"] == "LAND"
 
 
 async def test_a_px4_that_is_told_to_stay_as_it_turns_back_keeps_its_nose(px4: Rig) -> None:
