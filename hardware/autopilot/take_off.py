@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from hardware.authority import FlightEnded
@@ -16,6 +17,8 @@ from hardware.reasons.vehicle_news import TriedAgain
 LEAVE_GROUND_S = 60.0
 MOST_SAID = 3
 HOME_SET_S = 0.25
+RISES_M, RISES_S, RISES_WALL_S = 0.5, 10.0, 2.0
+"""A climb that gains less in this time has ended: a pilot who selects PX4's own HOLD stops it, and that is our mode."""
 
 
 async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
@@ -36,8 +39,16 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
         settled = snapshot.custom_mode in dialect.settled_modes
         return up is not None and up > altitude_relative_m - slack and level and settled
 
-    deadline = Deadline(monitor.clock, 30.0 + altitude_relative_m / 0.5)
-    await guidance.until(manoeuvre, deadline, lambda: climbed() or snapshot.disarmed)
+    highest_m, rises = -math.inf, Deadline(monitor.clock, RISES_S, RISES_WALL_S)
+
+    def ended() -> bool:
+        nonlocal highest_m, rises
+        up = snapshot.altitude_relative_m or 0.0
+        if up > min(highest_m + RISES_M, altitude_relative_m - slack) or not monitor.connected:
+            highest_m, rises = up, Deadline(monitor.clock, RISES_S, RISES_WALL_S)
+        return climbed() or snapshot.disarmed or rises.passed
+
+    await guidance.until(manoeuvre, Deadline(monitor.clock, 30.0 + altitude_relative_m / 0.5), ended)
     if not climbed():
         raise VehicleError(ClimbTooLow(snapshot.altitude_relative_m or 0.0, altitude_relative_m))
     guidance.spot = (guidance.here()[0], _amsl_of(guidance, altitude_relative_m))

@@ -210,6 +210,17 @@ async def test_what_stops_a_take_off_is_sent_before_the_answer_to_the_arming_has
     assert (await slow.sim.order("truth"))["mode"] == "LAND"
 
 
+async def test_a_climb_that_somebody_ends_by_our_own_mode_is_told_in_seconds(px4: Rig) -> None:
+    """A pilot put a real PX4 into HOLD at 10 m, and it was said to take off for 110 s."""
+    take_off = asyncio.create_task(px4.vehicle.take_off(100.0))
+    await px4.until(lambda: (px4.vehicle.telemetry().altitude_relative_m or 0.0) > 8.0)
+    began_s = px4.clock.now()
+    await px4.sim.order("pilot_mode", mode="HOLD")
+    with pytest.raises(VehicleError, match="climbed to"):
+        await take_off
+    assert px4.clock.now() - began_s < 60.0
+
+
 async def test_a_px4_that_is_told_to_stay_as_it_turns_back_keeps_its_nose(px4: Rig) -> None:
     await px4.vehicle.take_off(10.0)
     telemetry = px4.vehicle.telemetry()
