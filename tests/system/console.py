@@ -128,7 +128,8 @@ class Console:
 
 @asynccontextmanager
 async def console(url: str) -> AsyncIterator[Console]:
-    async with httpx.AsyncClient(base_url=url, timeout=60.0) as client:
+    # the server closes what was idle for 5 s: an order sent just then is lost with its connection
+    async with httpx.AsyncClient(base_url=url, timeout=60.0, limits=httpx.Limits(keepalive_expiry=2.0)) as client:
         made = Console(url, client)
         try:
             yield made
