@@ -104,7 +104,7 @@ class Dialect:
     the raw modes it then shows. stay: makes the place where it is the one it holds at; None: it comes to rest there by
     itself. hold_turns_nose: out of a flight, the first of these turns the nose as well. steering: the mode in which it
     flies to places and turns as told.
-    before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
+    before_take_off: the mode to be in for arming. take_off: (altitude relative m, altitude AMSL m) ->
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
     turn_methods: ways to turn a full circle, in the order in which to try them. yaw_on_the_way: how the nose is sent

@@ -97,7 +97,8 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
     while not deadline.passed:
         began_s = clock.now()
         try:
-            if snapshot.custom_mode not in dialect.before_take_off.modes:
+            modes = dialect.before_take_off.modes if snapshot.disarmed else dialect.take_off_modes
+            if snapshot.custom_mode not in modes:
                 await guidance.select(manoeuvre, dialect.before_take_off)
             if not snapshot.armed:
                 await _arm(guidance, manoeuvre)

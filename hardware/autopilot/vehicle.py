@@ -73,7 +73,7 @@ class MavsdkVehicle:
         dialect, monitor = self._monitor.dialect, self._monitor
         heard, snapshot = self.telemetry(), monitor.snapshot
         prearm_ok = dialect.prearm_ok(snapshot.prearm_present, snapshot.prearm_healthy)
-        in_our_mode = dialect.prearm_has_present_bit or snapshot.custom_mode in dialect.before_take_off.modes
+        in_our_mode = dialect.prearm_has_present_bit or snapshot.custom_mode in dialect.take_off_modes
         said = " / ".join(monitor.said_since(heard.at_s - SAID_LATELY_S)[-MOST_SAID:])
         readiness = Readiness(prearm_ok, snapshot.prearm_healthy is not None, in_our_mode, said)
         checks = telemetry_checks(heard, readiness, monitor.remote_id, self._minimum_battery_percent)

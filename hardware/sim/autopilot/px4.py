@@ -110,8 +110,20 @@ class Px4(Firmware):
         self._carried: tuple[float, float, float] | None = None
         """Until when it is carried on, and where it was told to stop."""
         self._given_yaw = False
+        self._after_landing = "HOLD"
 
     # -- modes -----------------------------------------------------------------------------------------------------
+
+    def set_mode(self, mode: str) -> None:
+        if mode in ("RETURN", "LAND") and self.mode not in ("RETURN", "LAND"):
+            self._after_landing = "TAKEOFF" if self.mode == "TAKEOFF" else "HOLD"
+        super().set_mode(mode)
+
+    def arm(self) -> int:
+        """In TAKEOFF it then takes off unasked: only the mode is looked at."""
+        if not self.flight.armed:
+            self._take_off_up = self.parameters["MIS_TAKEOFF_ALT"]
+        return super().arm()
 
     def enter(self, mode: str) -> None:
         flight = self.flight
@@ -145,7 +157,8 @@ class Px4(Firmware):
             self._watch_fence()
 
     def landed(self) -> None:
-        self.mode = "HOLD"
+        """Told to land in its climb, it goes back to TAKEOFF."""
+        self.mode = self._after_landing
 
     def _within_fence(self, north: float, east: float, up: float) -> bool:
         far, high = self.parameters["GF_MAX_HOR_DIST"], self.parameters["GF_MAX_VER_DIST"]

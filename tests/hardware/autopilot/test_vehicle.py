@@ -221,6 +221,21 @@ async def test_a_climb_that_somebody_ends_by_our_own_mode_is_told_in_seconds(px4
     assert px4.clock.now() - began_s < 60.0
 
 
+async def test_a_px4_that_landed_out_of_its_climb_is_not_armed_in_the_mode_that_takes_off(px4: Rig) -> None:
+    """A real one began to climb to 2.5 m as it was armed, before a take-off was ordered."""
+    climb = asyncio.create_task(px4.vehicle.take_off(100.0))
+    await px4.until(lambda: (px4.vehicle.telemetry().altitude_relative_m or 0.0) > 5.0)
+    await px4.vehicle.land()
+    with pytest.raises(VehicleError, match="replaced by"):
+        await climb
+    await px4.until(lambda: px4.vehicle.telemetry().armed is False)
+    assert px4.vehicle.telemetry().mode == "TAKEOFF"
+
+    await px4.sim.order("fault", kind="refuse", count=1, of=TAKE_OFF)
+    await px4.vehicle.take_off(10.0)
+    assert any(isinstance(news, TriedAgain) and isinstance(news.because, AutopilotRefused) for news in px4.news)
+
+
 async def test_a_px4_that_is_told_to_stay_as_it_turns_back_keeps_its_nose(px4: Rig) -> None:
     await px4.vehicle.take_off(10.0)
     telemetry = px4.vehicle.telemetry()
