@@ -25,7 +25,7 @@ import numpy as np
 
 from backend.cli.field_lessons import taught
 from backend.cli.field_missions import FieldMission, FieldOptions, FieldStudy
-from backend.cli.field_summary import summary
+from backend.cli.field_summary import FieldSummary, summary
 from backend.simulation.field_world import Antenna
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
@@ -59,6 +59,8 @@ WIDENING = "sigma times, "
 AGAINST, WIDE = "whole", "widened"
 JUDGED = {"sector": "adaptive_turns", "swings": "listening"}
 """Ahead of the widened wedge."""
+NEW = "swings"
+"""What new missions do."""
 LATE_S = 400.0
 COLUMNS = (
     Column(name="compass off, degrees"),
@@ -176,7 +178,6 @@ def row(setting: Setting, name: str, found: Flown) -> tuple[Cell, ...]:
     """The cells under `COLUMNS`."""
     missions = list(found[name].values())
     told = summary(setting.options(name), missions)
-    in_time = np.mean([m.localized and m.time_s <= LATE_S for m in missions])
     claimed = not math.isnan(told.in_c95)
     return (
         "sd 4" if setting.compass_deg is None else f"{setting.compass_deg:g}",
@@ -189,7 +190,7 @@ def row(setting: Setting, name: str, found: Flown) -> tuple[Cell, ...]:
             for other in (AGAINST, WIDE)
         ),
         told.time_90_s,
-        float(100.0 * in_time),
+        _in_time(missions),
         100.0 * told.in_c95 if claimed else None,
         f"{100.0 * told.in_c95_low:.0f} to {100.0 * told.in_c95_high:.0f}" if claimed else None,
         100.0 * told.false_claims if claimed else None,
@@ -212,7 +213,25 @@ def figures(settings: Mapping[Setting, Flown]) -> list[Figure]:
                 longer, half = paired(missions, found[WIDE])
                 note = f"{len(missions)} pairs"
                 made.append(wanted(JUDGED[name], round(-longer, 1), of=setting.name, ci95=round(half, 1), note=note))
+            if name == NEW:
+                made += _how_true(told, _in_time(list(missions.values())), setting)
     return made
+
+
+def _how_true(told: FieldSummary, in_time: float, setting: Setting) -> list[Figure]:
+    """in_time: percent of the missions."""
+    low, high = 100.0 * told.in_c95_low, 100.0 * told.in_c95_high
+    note = f"{told.missions} missions"
+    return [
+        wanted("field_claims", round(in_time, 1), of=setting.name, note=note),
+        wanted("field_truth", round(100.0 * told.in_c95, 1), of=setting.name, note=f"{note}: {low:.0f} to {high:.0f}"),
+        wanted("field_beyond", round(100.0 * told.false_claims, 1), of=setting.name, note=note),
+    ]
+
+
+def _in_time(missions: Sequence[FieldMission]) -> float:
+    """Percent localized in 400 s."""
+    return float(100.0 * np.mean([m.localized and m.time_s <= LATE_S for m in missions]))
 
 
 def settings_of(compasses: str, antennas: str) -> list[Setting]:
