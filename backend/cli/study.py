@@ -175,6 +175,10 @@ def run(
         ]
         if runs < 1 or workers < 1:
             raise StudyError(f"--runs and --workers must be 1 or more, got {runs} and {workers}")
+        if "rollout" not in (planner or ()):
+            for name in study.rollout_only:
+                if _is_given(context, name):
+                    remark(f"--{name.replace('_', '-')} is of --planner rollout and changes nothing here")
         summaries = _fly(study, cells, runs, results, workers, scheduler)
     except (PlannerError, StudyError) as error:
         _refuse(error, json_)
@@ -252,7 +256,7 @@ class _Study:
         from planner.study.report import report
         from planner.study.scenarios import SCENARIOS
 
-        self.scenarios = (*SCENARIOS, FIELD_WORLD)
+        self.scenarios, self.rollout_only = (*SCENARIOS, FIELD_WORLD), cell.ROLLOUT_ONLY
         self.Cell, self.run_cell, self.table, self.report = cell.Cell, runner.run_cell, table, report
 
 

@@ -122,3 +122,10 @@ def test_a_dask_cluster_of_processes_flies_the_same_missions(tmp_path):
 @pytest.mark.parametrize("command", ["run", "report"])
 def test_help_has_an_example(command):
     assert "Example: crossfix study" in " ".join(call(command, "--help").stdout.split())
+
+
+def test_an_option_that_changes_nothing_is_named(tmp_path):
+    few = ("run", "--runs", "2", "--workers", "1", "--budget", "100", "--results", str(tmp_path), "--json")
+    said = call(*few, "--planner", "base").stderr
+    assert "--budget is of --planner rollout and changes nothing here" in said
+    assert "changes nothing" not in call(*few, "--planner", "base", "--planner", "rollout").stderr
