@@ -66,7 +66,7 @@ FAR_M = 50.0
 """Bearings from nearer do not count in the statistics of bearings, as in the thesis' (6.3.2)."""
 OUTLIER_DEG = 30.0
 LATE_S = 400.0
-"""Who has not said localized by then is not waited for when it never stops."""
+"""Within it missions are to say localized; a gyration that has not is not waited for."""
 LOOK_S = 1.0
 """To brake, look, and turn on, when a sector was not enough."""
 

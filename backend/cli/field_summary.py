@@ -10,17 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from backend.cli.field_missions import HOVER_W, OUTLIER_DEG, FieldMission, FieldOptions
+from backend.cli.field_missions import HOVER_W, LATE_S, OUTLIER_DEG, FieldMission, FieldOptions
 from planner.shares import wilson
 
 
 @dataclass(frozen=True, slots=True)
 class FieldSummary:
-    """Of all missions of a row; *_ci95: half the 95 % interval. in_c95 and what follows: of those that claimed."""
+    """Of all missions of a row; *_ci95: half the 95 % interval. seed: of the first. localized_in_time: within LATE_S.
+    in_c95 and what follows: of those that claimed."""
 
     options: FieldOptions
+    seed: int
     missions: int
     localized: float
+    localized_in_time: float
     time_s: float
     time_ci95_s: float
     time_90_s: float
@@ -53,8 +56,10 @@ def summary(options: FieldOptions, flown: Sequence[FieldMission]) -> FieldSummar
     honest = off[np.abs(off) <= OUTLIER_DEG]
     return FieldSummary(
         options=options,
+        seed=flown[0].seed,
         missions=len(flown),
         localized=len(claims) / len(flown),
+        localized_in_time=sum(m.time_s <= LATE_S for m in claims) / len(flown),
         time_s=float(times.mean()),
         time_ci95_s=float(1.96 * times.std(ddof=1) / math.sqrt(len(times))) if len(times) > 1 else nothing,
         time_90_s=float(np.quantile(times, 0.9)),

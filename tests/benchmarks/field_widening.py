@@ -17,9 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from backend.cli.field_missions import FieldMission
+from backend.cli.field_missions import LATE_S, FieldMission
 from backend.cli.field_summary import summary
-from tests.benchmarks.field_world import LATE_S, WIDENING, Setting, flown, settings_of
+from tests.benchmarks.field_world import WIDENING, Setting, flown, settings_of
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table
@@ -72,7 +72,7 @@ def row(setting: Setting, factor: float, missions: Sequence[FieldMission]) -> tu
         factor,
         told.missions,
         (told.time_s, told.time_ci95_s),
-        100.0 * float(np.mean([m.localized and m.time_s <= LATE_S for m in missions])),
+        100.0 * told.localized_in_time,
         100.0 * told.in_c95 if claimed else None,
         f"{100.0 * told.in_c95_low:.0f} to {100.0 * told.in_c95_high:.0f}" if claimed else None,
         100.0 * told.false_claims if claimed else None,

@@ -24,7 +24,7 @@ from typing import cast, get_args
 import numpy as np
 
 from backend.cli.field_lessons import taught
-from backend.cli.field_missions import FieldMission, FieldOptions, FieldStudy
+from backend.cli.field_missions import LATE_S, FieldMission, FieldOptions, FieldStudy
 from backend.cli.field_summary import FieldSummary, summary
 from backend.simulation.field_world import Antenna
 from tests.benchmarks.figures.circumstances import begin
@@ -61,7 +61,6 @@ JUDGED = {"sector": "adaptive_turns", "swings": "listening"}
 """Ahead of the widened wedge."""
 NEW = "swings"
 """What new missions do."""
-LATE_S = 400.0
 COLUMNS = (
     Column(name="compass off, degrees"),
     Column(name="antenna"),
@@ -190,7 +189,7 @@ def row(setting: Setting, name: str, found: Flown) -> tuple[Cell, ...]:
             for other in (AGAINST, WIDE)
         ),
         told.time_90_s,
-        _in_time(missions),
+        100.0 * told.localized_in_time,
         100.0 * told.in_c95 if claimed else None,
         f"{100.0 * told.in_c95_low:.0f} to {100.0 * told.in_c95_high:.0f}" if claimed else None,
         100.0 * told.false_claims if claimed else None,
@@ -214,24 +213,18 @@ def figures(settings: Mapping[Setting, Flown]) -> list[Figure]:
                 note = f"{len(missions)} pairs"
                 made.append(wanted(JUDGED[name], round(-longer, 1), of=setting.name, ci95=round(half, 1), note=note))
             if name == NEW:
-                made += _how_true(told, _in_time(list(missions.values())), setting)
+                made += _how_true(told, setting)
     return made
 
 
-def _how_true(told: FieldSummary, in_time: float, setting: Setting) -> list[Figure]:
-    """in_time: percent of the missions."""
+def _how_true(told: FieldSummary, setting: Setting) -> list[Figure]:
     low, high = 100.0 * told.in_c95_low, 100.0 * told.in_c95_high
     note = f"{told.missions} missions"
     return [
-        wanted("field_claims", round(in_time, 1), of=setting.name, note=note),
+        wanted("field_claims", round(100.0 * told.localized_in_time, 1), of=setting.name, note=note),
         wanted("field_truth", round(100.0 * told.in_c95, 1), of=setting.name, note=f"{note}: {low:.0f} to {high:.0f}"),
         wanted("field_beyond", round(100.0 * told.false_claims, 1), of=setting.name, note=note),
     ]
-
-
-def _in_time(missions: Sequence[FieldMission]) -> float:
-    """Percent localized in 400 s."""
-    return float(100.0 * np.mean([m.localized and m.time_s <= LATE_S for m in missions]))
 
 
 def settings_of(compasses: str, antennas: str) -> list[Setting]:

@@ -133,6 +133,9 @@ def test_a_row_counts_claims_and_bearings_from_afar():
     ]
     row = summary(FieldOptions(), missions)
     assert (row.localized, row.in_c95, row.false_claims) == pytest.approx((2 / 3, 0.5, 0.5))
+    assert row.localized_in_time == pytest.approx(2 / 3)
+    assert summary(FieldOptions(), [FLOWN, replace(FLOWN, time_s=401.0)]).localized_in_time == 0.5
+    assert row.seed == FLOWN.seed
     assert (row.outliers, row.bearings_far) == (1, 6)
     assert row.time_s == pytest.approx(200.0)
     assert row.energy_kj == pytest.approx(50.0)
