@@ -4,6 +4,7 @@ import { act } from "preact/test-utils";
 import { afterEach, expect, it, vi } from "vitest";
 import { localProblem, RequestFailed } from "../sources/problem";
 import { upload } from "../sources/upload";
+import { session } from "../state/session";
 import { Upload } from "./Upload";
 
 vi.mock("../sources/upload", () => ({ upload: vi.fn() }));
@@ -34,7 +35,10 @@ function send(): () => Promise<void> {
 
 const leave = () => act(() => render(null, document.body));
 
-afterEach(leave);
+afterEach(() => {
+  leave();
+  session.value = null;
+});
 
 it("says at once that a file was refused", async () => {
   const told = page("/overlays");
@@ -54,4 +58,36 @@ it("says what was refused after its page was left, once, when that is opened aga
   expect(page("/overlays").mock.calls).toEqual([[FULL]]);
   leave();
   expect(page("/overlays")).not.toHaveBeenCalled();
+});
+
+it("says it on the page that was opened again before the file was refused, and nowhere else", async () => {
+  const left = page("/overlays");
+  const refused = send();
+  leave();
+  left.mockClear();
+  const again = page("/overlays");
+  await refused();
+  expect(left).not.toHaveBeenCalled();
+  expect(again.mock.calls).toEqual([[FULL]]);
+  leave();
+  expect(page("/overlays")).not.toHaveBeenCalled();
+});
+
+it("says nothing to the next person, and says it once the first is back", async () => {
+  const enters = (person_id: string) =>
+    act(() => {
+      session.value = { mode: "people", person: { person_id } } as never;
+    });
+  enters("ada");
+  const adas = page("/overlays");
+  const refused = send();
+  adas.mockClear();
+  enters("bob"); // signed in from another page
+  await refused();
+  expect(adas).not.toHaveBeenCalled();
+  leave();
+  expect(page("/overlays")).not.toHaveBeenCalled();
+  leave();
+  enters("ada");
+  expect(page("/overlays").mock.calls).toEqual([[FULL]]);
 });

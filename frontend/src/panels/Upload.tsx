@@ -1,25 +1,26 @@
 // A button that sends a file as the body of a request, with its progress.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { upload } from "../sources/upload";
+import { me } from "../state/session";
 import type { Problem } from "../wire";
 
-/** What was refused after its page was left, by path: said when that is opened again. */
+/** By person and path: who says what is wrong on the page that is open now, and what was refused after it was left. */
+const tellers = new Map<string, (p: Problem) => void>();
 const unsaid = new Map<string, Problem>();
 
-/** Says what is wrong with uploads to a path, to whoever is on their page, now or next time. */
+/** Says what is wrong with uploads to a path, wherever it is open by then or when it is opened next: to the same person. */
 export function useTeller(path: string, onProblem: (p: Problem | null) => void): (p: Problem) => void {
-  const isLeft = useRef(false);
+  const key = `${me.value?.person_id} ${path}`;
   useEffect(() => {
-    const before = unsaid.get(path);
+    const before = unsaid.get(key);
     if (before) onProblem(before);
-    unsaid.delete(path);
-    return () => {
-      isLeft.current = true;
-    };
-  }, []);
-  return (problem) => void (isLeft.current ? unsaid.set(path, problem) : onProblem(problem));
+    unsaid.delete(key);
+    tellers.set(key, onProblem);
+    return () => void tellers.delete(key);
+  }, [key]);
+  return (problem) => (tellers.get(key) ?? ((unheard) => unsaid.set(key, unheard)))(problem);
 }
 
 export function Upload({

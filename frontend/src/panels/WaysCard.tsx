@@ -58,8 +58,8 @@ export function WaysCard({ missionId }: { missionId: string }) {
             </button>
           )}
         </div>
-        {problem && <ProblemBox problem={problem} testId="ways-problem" />}
       </details>
+      {problem && <ProblemBox problem={problem} testId="ways-problem" />}
     </section>
   );
 }
