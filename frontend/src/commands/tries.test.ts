@@ -149,6 +149,16 @@ it.each([3_600_000, -3_600_000])("knows what was ordered since by a server's clo
   }
 });
 
+it("the clock of a simulation that runs fast is known less well: what was ordered just before the press ends nothing", async () => {
+  begin({ hold: ["lost"] });
+  void sendUrgent(M, "hold");
+  await pass(100);
+  hear(2000 - 200 * 20, told(-1000, theirs)); // it ran 100 ms at 20 times, and the status was 200 ms on its way
+  live.value = { ...live.value, hello: { time_factor: 20 } as typeof live.value.hello };
+  await pass();
+  expect(source.done).toEqual(["hold"]);
+});
+
 it("what was ordered while the machine slept, before the press, is heard after it and ends nothing", async () => {
   begin({ hold: ["lost"] });
   hear(0);

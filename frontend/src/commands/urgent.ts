@@ -19,7 +19,8 @@ type InNoMission = Exclude<Urgent, "abort">;
 export interface UrgentState {
   stage: "sending" | "retrying" | "accepted";
   count: number;
-  acceptedMs?: number;
+  /** When a status that is heard was told after it was accepted. */
+  newsMs?: number;
 }
 
 /** One entry a kind: a hold never takes the place of an abort that is still on its way. */
@@ -32,7 +33,9 @@ const LONGEST_TRY_MS = 20_000;
 /** By then the server sends a vehicle home whose consoles are gone; later an order would act on one that its giver no longer sees. */
 const GIVE_UP_MS = 60_000;
 const SHOWN_MS = 4000;
-/** What was ordered sooner after the press may have been ordered before it: the server's clock is known no better. */
+/** So long a status may be on its way, and wait to be shown. */
+const STATUS_MS = 250;
+/** What was ordered sooner after the press may have been ordered before it: the server's clock is known no better, by ours. */
 const CLOCKS_MS = 2000;
 const STEERING: readonly string[] = ["hold", "return", "land", "resume", "abort"];
 
@@ -108,18 +111,18 @@ function isSteering({ event }: Recorded, craftId: string): boolean {
   return event.kind === "command_accepted" && STEERING.includes(event.command) && !ownIds.has(event.command_id);
 }
 
-/** When it was pressed, by the server's clock as heard since: what was known of that clock before a sleep is old. */
-function servedMs(order: Order): number {
+/** After when it was surely pressed, by the server's clock as heard since: what was known of that before a sleep is old. */
+function surelyAfterMs(order: Order): number {
   const { status, beganMs, hello } = live.peek();
   if (!status || status.atMs <= Math.max(beganMs, order.pressedMs[1])) return Infinity;
-  return Date.parse(status.value.at_utc) + (performance.now() - status.atMs - sinceMs(order)) * (hello?.time_factor ?? 1);
+  return Date.parse(status.value.at_utc) + (performance.now() - status.atMs - sinceMs(order) + CLOCKS_MS) * (hello?.time_factor ?? 1);
 }
 
 /** Has somebody else, or the mission by itself, ordered something since? As far as the journal is heard here. */
 function isOvertaken(order: Order): boolean {
   const { mission, events } = live.peek();
   const { id, craftId } = order.flown;
-  const afterMs = servedMs(order) + CLOCKS_MS;
+  const afterMs = surelyAfterMs(order);
   return mission.missionId === id && events.some((told) => Date.parse(told.at_utc) > afterMs && isSteering(told, craftId));
 }
 
@@ -213,7 +216,7 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
       tell(press, reply.accepted ? null : refusal(reply.reason));
       if (!reply.accepted) break;
       underWay.delete(own);
-      show(own, { stage: "accepted", count: tries - 1, acceptedMs: performance.now() });
+      show(own, { stage: "accepted", count: tries - 1, newsMs: performance.now() + STATUS_MS });
       await pause(SHOWN_MS);
       break;
     } catch (error) {

@@ -64,6 +64,18 @@ it("says so once it is accepted, and the vehicle is heard since", async () => {
   expect(says()).toBe("");
 });
 
+it("does not of a status that was told before, and waited to be shown", async () => {
+  source.answer = () => Promise.resolve(accepted);
+  act(() => source.tell(HELD));
+  pressHold();
+  await later(300);
+  expect(document.querySelector("[data-testid=order-note]")?.textContent ?? "").not.toContain(DONE);
+  expect(says()).not.toContain(DONE);
+  await later(300, HELD);
+  expect(says()).toContain(DONE);
+  await later(5000, HELD);
+});
+
 it("does not where it is refused", async () => {
   source.answer = () => Promise.resolve({ ...accepted, accepted: false, reason: { code: "pilot_controls" } });
   pressHold();
