@@ -11,7 +11,7 @@ import { advisedWay } from "../state/advice";
 import { shownBelief } from "../state/belief";
 import { isChoosing } from "../state/candidates";
 import { source } from "../state/connection";
-import { boundsOf, lonLat } from "../state/geometry";
+import { boundsOf, lonLat, placeOn } from "../state/geometry";
 import { highlighted } from "../state/highlight";
 import { inFlight, isHomeward } from "../state/mission";
 import { cursor, emittersThen } from "../state/moment";
@@ -126,8 +126,7 @@ function canPropose(): boolean {
 function bind(map: GlMap): () => void {
   const nextMarker = new Marker({ element: nextElement(), draggable: true });
   nextMarker.on("dragend", () => {
-    const { lng, lat } = nextMarker.getLngLat();
-    propose({ lat, lon: lng });
+    propose(placeOn(nextMarker.getLngLat()));
   });
   let nextShown = false;
   const stops = [
@@ -316,8 +315,8 @@ export function FlyMap() {
       box.current?.setAttribute("data-ready", "true");
     });
     created.on("click", (event: MapMouseEvent) => {
-      if (tapping.peek()) void tell({ lat: event.lngLat.lat, lon: event.lngLat.lng }, "map");
-      else if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
+      if (tapping.peek()) void tell(placeOn(event.lngLat), "map");
+      else if (canPropose()) propose(placeOn(event.lngLat));
     });
     created.on("mousemove", "candidates", ({ features }) => {
       highlighted.value = (features?.[0]?.properties.index as number | undefined) ?? null;

@@ -1,6 +1,7 @@
 // Coordinates under the cursor at once; the expected time from there as soon as the cursor rests.
 import { signal } from "@preact/signals";
 import type { Map as GlMap, MapMouseEvent } from "maplibre-gl";
+import { placeOn } from "../state/geometry";
 import type { ExpectedTime, Place } from "../wire";
 
 export interface Hover {
@@ -24,7 +25,7 @@ export function watchHover(map: GlMap, ask: Ask): () => void {
   };
   const onMove = (event: MapMouseEvent) => {
     stop();
-    const place = { lat: event.lngLat.lat, lon: event.lngLat.lng };
+    const place = placeOn(event.lngLat);
     hover.value = { place, expected: null };
     asking = new AbortController();
     const { signal: aborted } = asking;

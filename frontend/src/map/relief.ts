@@ -1,6 +1,7 @@
 // The ground's relief under everything else: shading and contour lines from the uploaded terrain.
 import type { Map as GlMap } from "maplibre-gl";
 import { contours, HEIGHTS, listTerrain } from "../sources/terrainApi";
+import { placeOn } from "../state/geometry";
 import type { Palette } from "./palette";
 
 const LAYERS = ["relief-shade", "relief-lines", "relief-heights"] as const;
@@ -35,8 +36,7 @@ export async function addRelief(map: GlMap, colours: Palette, below: string): Pr
     },
     below,
   );
-  const { lat, lng } = map.getCenter();
-  const data = await contours({ lat, lon: lng });
+  const data = await contours(placeOn(map.getCenter()));
   if (!map.getSource("relief") || map.getSource("contours")) return;
   map.addSource("contours", { type: "geojson", data });
   const paint = { "line-color": colours.ink, "line-opacity": 0.35 };

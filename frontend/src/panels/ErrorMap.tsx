@@ -1,6 +1,7 @@
 // Where bearings were right and where they were outliers: the places they were taken at, to scale, without a map below.
 import { t } from "../i18n";
 import type { Calibration } from "../sources/libraryApi";
+import { beside, boundsOf, lonLat } from "../state/geometry";
 import { formatNumber } from "../units/quantities";
 
 const WIDTH = 320;
@@ -8,16 +9,12 @@ const HEIGHT = 160;
 const MARGIN = 10;
 
 export function ErrorMap({ bearings }: { bearings: Calibration["bearings"] }) {
-  const [lons, lats] = [bearings.map((b) => b.place.lon), bearings.map((b) => b.place.lat)];
-  const [west, south] = [Math.min(...lons), Math.min(...lats)];
+  const [west, south, east, north] = boundsOf(bearings.map((b) => lonLat(b.place)))!;
   const squeeze = Math.cos((south * Math.PI) / 180);
-  const span = Math.max(
-    (Math.max(...lons) - west) * squeeze,
-    (Math.max(...lats) - south) * ((WIDTH - 2 * MARGIN) / (HEIGHT - 2 * MARGIN)),
-    1e-4,
-  );
+  const span = Math.max((east - west) * squeeze, (north - south) * ((WIDTH - 2 * MARGIN) / (HEIGHT - 2 * MARGIN)), 1e-4);
   const scale = (WIDTH - 2 * MARGIN) / span;
-  const at = (lat: number, lon: number) => [MARGIN + (lon - west) * squeeze * scale, HEIGHT - MARGIN - (lat - south) * scale] as const;
+  const at = (lat: number, lon: number) =>
+    [MARGIN + (beside(lon, (west + east) / 2) - west) * squeeze * scale, HEIGHT - MARGIN - (lat - south) * scale] as const;
   const outliers = bearings.filter((b) => b.outlier).length;
   return (
     <figure class="error-map">
