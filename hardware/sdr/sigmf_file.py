@@ -77,7 +77,7 @@ class Samples:
 
 @dataclass(frozen=True, slots=True)
 class SigmfRecording:
-    """segments: at least one, the first from sample 0 on, ascending."""
+    """segments: at least one, ascending as are the times that they state. Samples before the first are its, too."""
 
     path: Path
     samples: Samples
@@ -113,8 +113,8 @@ class SigmfRecording:
 
     def blocks(self, size: int) -> Iterator[IqBlock]:
         """`size` samples each, capture by capture at its own time; that time went by between two counts as loss."""
-        firsts = [segment.first for segment in self.segments]
-        for begin, end in pairwise([*firsts, self.samples.size]):
+        last = self.samples.size
+        for begin, end in pairwise(sorted({0, *(min(segment.first, last) for segment in self.segments), last})):
             gap_s = self.time_of(begin) - self.time_of(begin - 1) - 1.0 / self.sample_rate_hz if begin > 0 else 0.0
             lost = 1 if abs(gap_s) > 1.0 / self.sample_rate_hz else 0
             for first in range(begin, end, size):
@@ -126,7 +126,7 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     """One recording: its meta file, its data file beside it, or an archive. Raises RecordingError."""
     path = Path(path)
     recording = _opened(path)
-    captures = recording.get_captures()
+    captures = sorted(recording.get_captures(), key=lambda capture: _whole(path, capture, sigmf.SAMPLE_START_KEY))
     rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
     if rate is None:
         raise RecordingError(SigmfFieldMissing(str(path), "core:sample_rate"))
@@ -155,8 +155,8 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
         recording.num_channels,
         float(rate),
         float(centre),
-        tuple(Segment(int(c.get(sigmf.SAMPLE_START_KEY, 0)), _time(path, c)) for c in captures),
-        _azimuths(path, recording, samples.size),
+        _segments(path, captures),
+        _azimuths(path, recording, captures, samples.size),
         _place(path, recording, captures),
     )
 
@@ -197,6 +197,23 @@ def _refuse_unread(meta: Path) -> None:
         raise _unusable(meta, "core:num_channels", channels)
 
 
+def _whole(path: Path, stated: dict[str, Any], key: str) -> int:
+    """How many samples, 0 where it is not stated."""
+    count = stated.get(key) or 0
+    if not isinstance(count, int | float) or count < 0 or count % 1 != 0:
+        raise RecordingError(FileUnreadable(str(path), f"{key}: {count!r}"[:LONGEST_CELL]))
+    return int(count)
+
+
+def _segments(path: Path, captures: Sequence[dict[str, Any]]) -> tuple[Segment, ...]:
+    segments = tuple(Segment(_whole(path, c, sigmf.SAMPLE_START_KEY), _time(path, c)) for c in captures)
+    stated = [segment.at_s for segment in segments if segment.at_s is not None]
+    for before, after in pairwise(stated):
+        if after < before:
+            raise _unusable(path, "core:datetime", datetime.fromtimestamp(after, UTC).isoformat())
+    return segments
+
+
 def _time(path: Path, capture: dict[str, Any]) -> float | None:
     stamp = capture.get(sigmf.DATETIME_KEY)
     if stamp is None:
@@ -208,19 +225,23 @@ def _time(path: Path, capture: dict[str, Any]) -> float | None:
     return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
 
 
-def _azimuths(path: Path, recording: sigmf.SigMFFile, size: int) -> tuple[Azimuth, ...]:
+def _azimuths(
+    path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, Any]], size: int
+) -> tuple[Azimuth, ...]:
     """Of annotations, else of captures (each holds until the next), in time order."""
     found = [
-        Azimuth(int(a[sigmf.SAMPLE_START_KEY]), int(a.get(sigmf.SAMPLE_COUNT_KEY) or 0), _degrees(path, a[AZIMUTH_KEY]))
+        Azimuth(
+            _whole(path, a, sigmf.SAMPLE_START_KEY),
+            _whole(path, a, sigmf.SAMPLE_COUNT_KEY),
+            _degrees(path, a[AZIMUTH_KEY]),
+        )
         for a in recording.get_annotations()
         if AZIMUTH_KEY in a
     ]
     if not found:
-        captures = recording.get_captures()
-        ends = [int(c.get(sigmf.SAMPLE_START_KEY, 0)) for c in captures[1:]] + [size]
-        for capture, end in zip(captures, ends, strict=True):
-            if AZIMUTH_KEY in capture:
-                first = int(capture.get(sigmf.SAMPLE_START_KEY, 0))
+        firsts = [min(_whole(path, c, sigmf.SAMPLE_START_KEY), size) for c in captures]
+        for capture, (first, end) in zip(captures, pairwise([*firsts, size]), strict=True):
+            if AZIMUTH_KEY in capture and end > first:
                 found.append(Azimuth(first, end - first, _degrees(path, capture[AZIMUTH_KEY])))
     return tuple(sorted(found, key=lambda a: a.first))
 

@@ -12,6 +12,7 @@ from refusals import refusing
 
 from hardware.direction_finding.table_file import RecordingError
 from hardware.reasons.iq_recording import FirstChannelUsed, SigmfFieldUnusable
+from hardware.reasons.table import FileUnreadable
 from hardware.sdr.rotation import IqReading, read_rotation
 from hardware.sdr.rotation_headings import annotated_headings
 from hardware.sdr.sigmf_file import Azimuth, load_sigmf, write_sigmf
@@ -34,7 +35,7 @@ def ramp(count: int) -> np.ndarray:
     return (np.arange(1, count + 1) / count + 0j).astype(np.complex64)
 
 
-def capture(first: int, stamp: str | None = None) -> dict[str, Any]:
+def capture(first: Any, stamp: str | None = None) -> dict[str, Any]:
     when = {} if stamp is None else {"core:datetime": stamp}
     return {"core:sample_start": first, "core:frequency": CENTRE_HZ} | when
 
@@ -110,3 +111,45 @@ async def test_each_sample_has_its_captures_time(
     )
     assert [bool(block.lost) for block in blocks] == [False] * 3 + [later_s > 0.5] + [False] * 2
     assert np.array_equal(np.concatenate([block.samples for block in blocks]), ramp(2000))
+
+
+EARLIER, LATER = "2026-05-01T10:00:00Z", "2026-05-01T10:00:30Z"
+
+
+def as_stated(folder: Path, *captures: dict[str, Any]) -> Path:
+    """2000 samples, a second."""
+    return changed(write_sigmf(folder / "stated", ramp(2000), RATE_HZ, CENTRE_HZ, BEGAN_S), list(captures))
+
+
+def test_captures_out_of_order_keep_their_times(tmp_path: Path) -> None:
+    recorded = load_sigmf(as_stated(tmp_path, capture(1000, LATER), capture(0, EARLIER)))
+    assert [(s.first, recorded.time_of(s.first) - recorded.start_s) for s in recorded.segments] == [(0, 0), (1000, 30)]
+    assert [(block.samples.size, block.lost) for block in recorded.blocks(5000)] == [(1000, 0), (1000, 1)]
+
+
+@pytest.mark.parametrize("beyond", [2000, 10**9])
+async def test_a_capture_beyond_the_samples_is_of_none(tmp_path: Path, beyond: int) -> None:
+    path = as_stated(tmp_path, capture(0, EARLIER), capture(beyond, LATER))
+    sizes = [block.samples.size async for block in SigmfSource(path).blocks()]
+    assert sizes == [100] * 20
+
+
+def test_samples_before_the_first_capture_are_read_too(tmp_path: Path) -> None:
+    recorded = load_sigmf(as_stated(tmp_path, capture(1000.0, EARLIER)))
+    assert sum(block.samples.size for block in recorded.blocks(300)) == 2000
+    assert recorded.time_of(1000) - recorded.start_s == 0.5
+
+
+@pytest.mark.parametrize("first", [-10, "x", 1.5, float("inf"), [1]])
+def test_a_capture_that_begins_nowhere_is_named(tmp_path: Path, first: Any) -> None:
+    with pytest.raises(RecordingError) as refused:
+        load_sigmf(as_stated(tmp_path, capture(0), capture(first)))
+    assert isinstance(refused.value.reason, FileUnreadable)
+    assert repr(first) in refused.value.reason.detail
+
+
+def test_captures_whose_time_goes_back_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError) as refused:
+        load_sigmf(as_stated(tmp_path, capture(0, LATER), capture(1000, EARLIER)))
+    assert isinstance(refused.value.reason, SigmfFieldUnusable)
+    assert refused.value.reason.field == "core:datetime"
