@@ -38,8 +38,8 @@ _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _SEPARATOR_TOLD = re.compile(r"\"?sep=.\"?", re.IGNORECASE)
 """First line of what Excel writes; which one it is shows in the others."""
 _LINES = re.compile(r"[^\r\n]+")
-_BEYOND_ASCII, _ESCAPED = re.compile("[\x80-\ud7ff\ue000-\U0010ffff]"), re.compile("[\udc80-\udcff]")
-_LATIN_1 = {0xDC00 + byte: byte for byte in range(0x80, 0x100)}
+_BEYOND_ASCII = bytes(range(0x80, 0x100))
+_ESCAPED = re.compile("[\udc80-\udcff]+")
 """What bytes stand for that are no UTF-8."""
 _MINUS = str.maketrans("\u2212\u2013", "--")
 """As typesetters write it."""
@@ -191,8 +191,10 @@ def decoded(raw: bytes) -> str:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("utf-8-sig", errors="surrogateescape")
-    if len(_BEYOND_ASCII.findall(text)) > len(_ESCAPED.findall(text)):
-        return text.translate(_LATIN_1)
+    escaped = sum(map(len, _ESCAPED.findall(text)))
+    beyond_ascii = len(text) - len(raw.translate(None, _BEYOND_ASCII))
+    if raw.startswith(codecs.BOM_UTF8) or beyond_ascii > 2 * escaped:
+        return _ESCAPED.sub(lambda found: found[0].encode("utf-8", "surrogateescape").decode("latin-1"), text)
     return raw.decode("latin-1")
 
 

@@ -43,10 +43,11 @@ _MINUTES = re.compile(r"(\d{1,3})[°º: ] ?(\d{1,2}(?:[.,]\d{1,9})?)['′’]?")
 _SECONDS = re.compile(r"(\d{1,3})[°º: ] ?(\d{1,2})['′’: ] ?(\d{1,2}(?:[.,]\d{1,9})?)(?:\"|″|”|'')?")
 """Of no sign: which parts it would hold for is written in more than one way."""
 _SENT: dict[_Axis, re.Pattern[str]] = {
-    "latitude": re.compile(r"(\d\d)(\d\d(?:[.,]\d{1,9})?)"),
-    "longitude": re.compile(r"(\d{3})(\d\d(?:[.,]\d{1,9})?)"),
+    "latitude": re.compile(r"[+-]?(\d\d)(\d\d(?:[.,]\d{1,9})?)"),
+    "longitude": re.compile(r"[+-]?(\d{3})(\d\d(?:[.,]\d{1,9})?)"),
 }
-"""Degrees and minutes in one number, as in the sentences that receivers send (NMEA 0183)."""
+"""Degrees and minutes in one number, as in the sentences that receivers send (NMEA 0183): without a sign, for which
+they have letters."""
 
 _ZONE = re.compile(r"(?:UTM ?)?0?(\d{1,2})(?:[ -]?([C-HJ-NP-X])((?<=N)ORTH|(?<=S)OUTH)?)?")
 _EPSG = re.compile(r"(?:EPSG:)?32([67])(\d\d)")
@@ -85,7 +86,12 @@ class PlaceColumns:
         lon = _degrees(row, self.lon, self.lon_letter, "longitude")
         if lat is None or lat == lon == 0.0:
             return self.lat, "latitude"
-        return (self.lon, "longitude") if lon is None else Place(lat, lon)
+        if lon is None:
+            return self.lon, "longitude"
+        lat_sent, lon_sent = _sent(row, self.lat, "latitude"), _sent(row, self.lon, "longitude")
+        if (lat_sent is None) != (lon_sent is None):  # spreadsheets take the zeros in front away that tell them apart
+            return (self.lon, "longitude") if lon_sent is None else (self.lat, "latitude")
+        return Place(lat, lon)
 
 
 def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | None:
@@ -99,17 +105,21 @@ def _degrees(row: Row, column: int, letter: int | None, axis: _Axis) -> float | 
         value = number_of(cell.strip("NSEWnsew").strip()) if told else None
         # a small letter behind seconds is their unit
         value = _sexagesimal(cell.strip("NSEW").strip()) if value is None else value
-    sent = _SENT[axis].fullmatch(cell.strip("NSEWnsew").strip())
+    sent = _sent(row, column, axis)
     if letter is not None:
         told.append(_hemisphere(row, letter))
     if sent is not None:
-        value = _sexagesimal(f"{sent[1]}:{sent[2]}") if told else None
+        value = _sexagesimal(f"{sent[1]}:{sent[2]}") if told and sent[0][0] not in "+-" else None
     if value is None or len(told) > 1 or not signs.keys() >= {*told}:
         return None
     if told and value < 0.0 and signs[told[0]] > 0.0:
         return None
     signed = signs[told[0]] * abs(value) if told else value
     return signed if abs(signed) <= _MOST_DEG[axis] else None
+
+
+def _sent(row: Row, column: int, axis: _Axis) -> re.Match[str] | None:
+    return _SENT[axis].fullmatch(row.cells[column].strip("NSEWnsew").strip())
 
 
 def _hemisphere(row: Row, column: int) -> str:

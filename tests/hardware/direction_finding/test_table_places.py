@@ -177,6 +177,12 @@ def test_the_hemisphere_of_a_zone_may_have_a_column(name: str, line: str, place:
         ("9030N,00712.3E", (0, "latitude")),
         ("0050.5N,0712.3E", (1, "longitude")),
         ("050.5N,007.3E", Place(50.5, 7.3)),
+        ("5006.508n,00712.3w", Place(50.10846666666667, -7.205)),
+        ("-0050.5S,00712.3E", (0, "latitude")),
+        ("+0050.5N,00712.3E", (0, "latitude")),
+        ("-0050.5,7.3", (0, "latitude")),
+        ("5106.508N,12.3W", (1, "longitude")),
+        ("50.5N,00712.3E", (0, "latitude")),
     ],
 )
 def test_degrees_and_minutes_are_read_as_receivers_send_them(line: str, place: Place | tuple[int, str]) -> None:
