@@ -53,7 +53,7 @@ export async function problemOf(response: Response): Promise<RequestFailed> {
   const { status, statusText } = response;
   const fallback = localProblem(t("problem.status", { status }), statusText || t("problem.noReason"), status);
   const isJson = response.headers.get("content-type")?.includes("json") ?? false;
-  const body = isJson ? ((await response.json()) as Partial<Problem>) : {};
+  const body: Partial<Problem> = (isJson && (await response.json().catch(() => null))) || {};
   return new RequestFailed({ ...fallback, ...body, errors: Array.isArray(body.errors) ? body.errors : [] });
 }
 

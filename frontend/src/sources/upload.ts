@@ -25,7 +25,7 @@ export function upload<Answer>(
       request.onerror = request.onabort = () => reject(unreachable(t("problem.upload")));
       request.onload = () => {
         const answer = new Response(request.responseText || null, {
-          status: request.status,
+          status: Math.min(request.status, 599), // a Response takes none beyond
           headers: { "content-type": request.getResponseHeader("content-type") ?? "" },
         });
         if (answer.ok)
