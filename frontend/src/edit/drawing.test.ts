@@ -2,7 +2,7 @@
 import { beforeEach, expect, it, vi } from "vitest";
 import { someSpec } from "../wire/examples";
 import { change, draft, forgetSent, isStored, storedDraft, textBeside, update } from "./draft";
-import { addRead, discard, settledDraft, tool } from "./drawing";
+import { add, addRead, discard, replace, settledDraft, tool } from "./drawing";
 import { isOfPreset } from "./presets";
 
 const begin = (key: string, text: Record<string, string> = {}) => update({ key, spec: someSpec(), hasArea: true, suggested: false, text });
@@ -133,4 +133,16 @@ it("a full storage keeps nothing from being typed, and what it holds from before
   expect(storedDraft("new")).not.toBeNull();
   forgetSent("new", draft.value!.spec);
   expect(storedDraft("new")).toBeNull();
+});
+
+it.each([add, replace])("takes what is drawn across the antimeridian for places on earth", (take) => {
+  begin("first");
+  const ring = (west: number, east: number): [number, number][] => [
+    [west, 50],
+    [east, 50],
+    [east, 51],
+    [west, 50],
+  ];
+  take("fence", [[ring(-180.25, -179.75)]]);
+  expect(draft.peek()?.spec.flight.fence).toEqual({ type: "Polygon", coordinates: [ring(179.75, -179.75)] });
 });

@@ -4,6 +4,7 @@ import { t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem, RequestFailed } from "../sources/problem";
 import { areaOf, polygonsOf, type Rings } from "../state/areas";
+import { beside } from "../state/geometry";
 import { TAP_MS } from "../state/tap";
 import type { Area } from "../wire";
 import { type Draft, draft, forget, update } from "./draft";
@@ -101,10 +102,15 @@ export async function settledDraft(): Promise<Draft | null> {
   return draft.peek();
 }
 
+/** The map goes on beyond 180 degrees, a mission does not. */
+const onEarth = (drawn: readonly Rings[]): Rings[] =>
+  drawn.map((rings) => rings.map((ring) => ring.map(([lon, lat]) => [beside(lon, 0), lat])));
+
 /** Puts polygons into the draft: they replace the suggested area, or any when they are to, else they are added. */
-export function add(kind: What, polygons: readonly Rings[]): void {
+export function add(kind: What, drawn: readonly Rings[]): void {
   endMoving();
   const now = draft.peek();
+  const polygons = onEarth(drawn);
   if (!now || polygons.length === 0) return;
   const { area, flight } = now.spec;
   if (kind === "area") {
@@ -128,8 +134,9 @@ export function remove(kind: What, index = 0): void {
 }
 
 /** Replaces all polygons of a kind after their corners were moved. */
-export function replace(kind: What, polygons: readonly Rings[]): void {
+export function replace(kind: What, drawn: readonly Rings[]): void {
   const now = draft.peek();
+  const polygons = onEarth(drawn);
   const joined = areaOf(polygons);
   if (!now || !joined) return;
   if (kind === "area") {

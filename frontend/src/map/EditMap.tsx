@@ -11,7 +11,7 @@ import { firstPlan, preview } from "../edit/preview";
 import { t } from "../i18n";
 import { type Ring, type Rings, ringsApart, ringsTogether } from "../state/areas";
 import type { At } from "../state/emitter";
-import { boundsOf, lonLat } from "../state/geometry";
+import { boundsOf, lonLat, together } from "../state/geometry";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { vehicle } from "../state/vehicle";
@@ -47,14 +47,14 @@ const ringsOf = (feature: GeoJSONStoreFeatures): Rings =>
   feature.geometry.type === "Polygon" ? (feature.geometry.coordinates as Rings) : [];
 
 /** Terra Draw knows no holes: every ring is a polygon of its own while its corners are moved. It takes nine decimals, a
- * tenth of a millimetre. Returns the rings that it does not take. */
+ * tenth of a millimetre, and none beyond 180 degrees. Returns the rings that it does not take. */
 function addRings(draw: TerraDraw, polygons: readonly Rings[]): Ring[] {
   const rings = ringsApart(polygons);
   const added = draw.addFeatures(
     rings.map(({ polygon, ring, corners }) => ({
       type: "Feature",
       properties: { mode: "polygon", polygon, ring },
-      geometry: { type: "Polygon", coordinates: [corners.map((corner) => corner.map((degrees) => Number(degrees.toFixed(9))))] },
+      geometry: { type: "Polygon", coordinates: [together(corners).map((corner) => corner.map((degrees) => Number(degrees.toFixed(9))))] },
     })),
   );
   const first = added.find(({ valid }) => valid)?.id;
