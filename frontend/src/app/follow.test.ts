@@ -1,7 +1,8 @@
 // @vitest-environment happy-dom
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { FakeSource } from "../sources/fakeSource";
-import { type ReplaySource, replays } from "../sources/replay";
+import type { ReplaySource } from "../sources/replay";
+import { replays } from "../sources/replays";
 import { live, source } from "../state/connection";
 import { isGone, noteGone } from "../state/gone";
 import { emptyLive } from "../state/live";

@@ -1,6 +1,6 @@
 // The address says which mission is shown, hence which source speaks: one place decides, whatever page comes or goes.
 import { computed, effect } from "@preact/signals";
-import { replays } from "../sources/replay";
+import { replays } from "../sources/replays";
 import { live, source } from "../state/connection";
 import { followed, isGone, noteGone } from "../state/gone";
 import { open } from "../state/open";

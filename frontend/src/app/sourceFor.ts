@@ -1,7 +1,7 @@
 // Which source shows a mission: the recorded example, a recording opened in this tab, else the server.
 import { EXAMPLE_ID, ExampleSource } from "../sources/example";
 import { LiveSource } from "../sources/live";
-import { replays } from "../sources/replay";
+import { replays } from "../sources/replays";
 import type { Source } from "../sources/source";
 import { settings } from "../state/settings";
 

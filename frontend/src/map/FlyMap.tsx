@@ -11,7 +11,7 @@ import { advisedWay } from "../state/advice";
 import { shownBelief } from "../state/belief";
 import { isChoosing } from "../state/candidates";
 import { source } from "../state/connection";
-import { boundsOf, lonLat, placeOn } from "../state/geometry";
+import { boundsOf, lonLat } from "../state/geometry";
 import { highlighted } from "../state/highlight";
 import { inFlight, isHomeward } from "../state/mission";
 import { cursor, emittersThen } from "../state/moment";
@@ -40,6 +40,7 @@ import { hover, watchHover } from "./hover";
 import { addSources, missionLayers, type SourceName, SWITCHES, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
 import { palettes } from "./palette";
+import { placeOn } from "./placeOn";
 import { addRelief, showRelief } from "./relief";
 import { showVehicle } from "./vehicleMarker";
 

@@ -1,8 +1,8 @@
 // Coordinates under the cursor at once; the expected time from there as soon as the cursor rests.
 import { signal } from "@preact/signals";
 import type { Map as GlMap, MapMouseEvent } from "maplibre-gl";
-import { placeOn } from "../state/geometry";
 import type { ExpectedTime, Place } from "../wire";
+import { placeOn } from "./placeOn";
 
 export interface Hover {
   place: Place | null;

@@ -1,8 +1,8 @@
 // The ground's relief under everything else: shading and contour lines from the uploaded terrain.
 import type { Map as GlMap } from "maplibre-gl";
 import { contours, HEIGHTS, listTerrain } from "../sources/terrainApi";
-import { placeOn } from "../state/geometry";
 import type { Palette } from "./palette";
+import { placeOn } from "./placeOn";
 
 const LAYERS = ["relief-shade", "relief-lines", "relief-heights"] as const;
 

@@ -4,7 +4,8 @@ import { act } from "preact/test-utils";
 import { afterEach, expect, it, vi } from "vitest";
 import { draftSuggested } from "../commands/suggested";
 import * as api from "../sources/api";
-import { type ReplaySource, replays } from "../sources/replay";
+import type { ReplaySource } from "../sources/replay";
+import { replays } from "../sources/replays";
 import { route } from "../state/route";
 import { MissionsPage } from "./MissionsPage";
 

@@ -308,7 +308,7 @@ function OrderNote() {
   const command = t(`bar.${order.order}` satisfies MessageKey);
   const way = t(`bar.${order.way}` satisfies MessageKey);
   const reason = order.because ? reasonText(order.because) : "";
-  const isNews = status!.atMs > (urgent.value[order.order]?.newsMs ?? Infinity); // "done" may be of an earlier one
+  const isNews = status!.atMs > Number(urgent.value[order.order]?.newsMs); // "done" may be of an earlier one
   if (order.stage === "done" && order.because === null) return isNews ? <span>{t("bar.order.done", { command })}</span> : null;
   const key = order.stage === "done" ? "bar.order.instead" : reason ? "bar.order.refused" : "bar.order.tried";
   return (

@@ -4,7 +4,7 @@ import type { Command, CommandReply, ExpectedTime, LiveMessage, PreflightReply, 
 import { type BeliefFrame, bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
 import * as api from "./api";
 import { LiveSource } from "./live";
-import { refuse } from "./replay";
+import { refuse } from "./replays";
 import type { Source, SourceMessage } from "./source";
 
 /** Its mission's id, which no mission of the server has. */

@@ -1,23 +1,14 @@
 // A recording: a mission's journal as exported (JSON), shown through the same interface as a live one. The safety bar
 // above it stays the server's: what flies meanwhile is seen, and stopped, from here too.
-import { t } from "../i18n";
 import type { Command, CommandReply, ExpectedTime, ExportedMission, PreflightReply, Track } from "../wire";
 import * as api from "./api";
 import { LiveSource } from "./live";
-import { localProblem, RequestFailed } from "./problem";
+import { refuse } from "./replays";
 import type { Source, SourceMessage } from "./source";
-
-/** Recordings opened in this tab, by mission id. */
-export const replays = new Map<string, ReplaySource>();
 
 /** Reads an exported journal, of any age: the server knows all its forms. Raises RequestFailed when it is something else. */
 export async function readRecording(text: string, server?: Server): Promise<ReplaySource> {
   return new ReplaySource(await api.readExported(text), server);
-}
-
-/** A recording takes no commands and answers no questions about what might be. */
-export function refuse(): never {
-  throw new RequestFailed(localProblem(t("problem.refused"), t("problem.recording"), 409));
 }
 
 /** What the server tells besides missions: its link, the vehicle, what flies. */

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LonLat } from "../wire/beliefFrame";
-import { bearingDeg, boundsOf, circle, destination, distanceM, extent, metresPerDegree, placeOn, ringAreaM2, wedge } from "./geometry";
+import { bearingDeg, boundsOf, circle, destination, distanceM, extent, metresPerDegree, ringAreaM2, wedge } from "./geometry";
 
 const places: LonLat[] = [
   [7.2, 50.62],
@@ -107,15 +107,4 @@ it("measures a region of twenty thousand corners", () => {
 it("bounds more points than a call takes arguments", () => {
   const points = Array.from({ length: 500_000 }, (_, i): LonLat => [i / 1e4, -i / 1e5]);
   expect(boundsOf(points)).toEqual([0, -4.99999, 49.9999, -0]);
-});
-
-it.each([
-  [7.2, 7.2],
-  [180, 180],
-  [-179.998, -179.998],
-  [180.002, -179.998],
-  [-180.002, 179.998],
-  [539.998, 179.998],
-])("a place at %d degrees of a map is at %d degrees on earth", (lng, lon) => {
-  expect(placeOn({ lng, lat: 50 }).lon).toBeCloseTo(lon, 9);
 });

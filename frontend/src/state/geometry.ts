@@ -22,9 +22,6 @@ export const place = ([lon, lat]: LonLat): Place => ({ lat, lon });
 /** The same meridian, at most half a turn from another: a mission may lie across the antimeridian. */
 export const beside = (lon: number, other: number): number => lon + 360 * Math.round((other - lon) / 360);
 
-/** A place of a map, which goes on beyond 180 degrees. */
-export const placeOn = ({ lng, lat }: { lng: number; lat: number }): Place => ({ lat, lon: beside(lng, 0) });
-
 /** Beside the first of them. */
 export const together = (points: readonly LonLat[]): LonLat[] => points.map(([lon, lat]) => [beside(lon, points[0]![0]), lat]);
 
