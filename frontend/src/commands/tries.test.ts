@@ -32,7 +32,7 @@ const told = (inMs: number, event: object) => ({ seq: 1, at_utc: inTime(inMs), e
 const theirs = { kind: "command_accepted", command: "return", command_id: "theirs" };
 const byItself = { kind: "return_ordered", by: null, craft_id: "c" };
 const M_SHOWN = { ...emptyLive, mission: { ...emptyLive.mission, missionId: "m" } };
-/** What the page is told now of the server's time, and entries of its journal. */
+/** What the page hears now of the server's time, and entries of its journal. */
 function hear(statusInMs: number, ...events: Recorded[]): void {
   const status = { value: someStatus({ at_utc: inTime(statusInMs) }), atMs: performance.now() };
   live.value = { ...M_SHOWN, beganMs: live.value.beganMs, status, events };

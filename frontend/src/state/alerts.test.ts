@@ -33,7 +33,7 @@ it("an alert is open until it is acknowledged or over", () => {
   expect(isOpen(alert("a", "warning", "", { acknowledgedBy: "o" }))).toBe(false);
 });
 
-it("a loss of samples is told as it is now, of the craft that it is about, while the alert lasts", () => {
+it("a loss of samples is shown as it is now, of the craft that it is about, while the alert lasts", () => {
   const loses = (changes: Partial<Alert> = {}) =>
     alert("a", "caution", "", { craftId: CRAFT, reason: { code: "samples_lost", lost_percent: 8 }, ...changes });
   const heard = (receiver: "ok" | "lost", percent: number) =>

@@ -15,7 +15,7 @@ export function sortAlerts(alerts: readonly Alert[]): Alert[] {
 }
 
 /**
- * How much a receiver loses changes while the alert lasts, and is told as it is now, in whole percent: it is read aloud whenever it
+ * How much a receiver loses changes while the alert lasts, and is shown as it is now, in whole percent: it is read aloud whenever it
  * changes. status: null while another moment is shown.
  */
 export const atPresent = (alerts: readonly Alert[], status: StatusMessage | null): Alert[] =>

@@ -1,4 +1,4 @@
-// What of a search is told to somebody who was not there.
+// What a search tells somebody who was not there.
 import type { EventKind, MissionEvent } from "../wire";
 import { isMain } from "./eventWeight";
 import { OF_THE_RECORD } from "./flown";
