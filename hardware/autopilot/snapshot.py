@@ -56,7 +56,7 @@ class Snapshot:
     """As the last heartbeat said."""
     heartbeat_at_s: float | None = None
     arming_at_s: float = -math.inf
-    """When the autopilot last agreed to arm, or was last ordered to and has not refused."""
+    """When the autopilot last agreed to arm, or left an order to unanswered; infinite while the answer is awaited."""
     landed_state: int = _UNDEFINED
     prearm_present: bool | None = None
     prearm_healthy: bool | None = None

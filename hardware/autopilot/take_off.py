@@ -57,13 +57,14 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
 async def _arm(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
     """From the order on it may be armed: what stops a take-off must reach it though its answer has not come yet."""
     snapshot, clock = guidance.monitor.snapshot, guidance.monitor.clock
-    before_s, snapshot.arming_at_s = snapshot.arming_at_s, clock.now()
+    before_s, snapshot.arming_at_s = snapshot.arming_at_s, math.inf
     try:
         await guidance.send(manoeuvre, arm(), guidance.monitor.dialect.take_off_modes, "arming")
     except (CommandDenied, OutOfMode):
         snapshot.arming_at_s = before_s
         raise
-    snapshot.arming_at_s = clock.now()
+    finally:
+        snapshot.arming_at_s = min(snapshot.arming_at_s, clock.now())
 
 
 async def _hear_home(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
