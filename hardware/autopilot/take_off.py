@@ -19,6 +19,8 @@ MOST_SAID = 3
 HOME_SET_S = 0.25
 RISES_M, RISES_S, RISES_WALL_S = 0.5, 10.0, 2.0
 """A climb that gains less in this time has ended: a pilot who selects PX4's own HOLD stops it, and that is our mode."""
+JUMPS_M = 2.0
+"""A height that falls by more in a climb has jumped: what was gained counts from there."""
 
 
 async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
@@ -44,7 +46,8 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
     def ended() -> bool:
         nonlocal highest_m, rises
         up = snapshot.altitude_relative_m or 0.0
-        if up > min(highest_m + RISES_M, altitude_relative_m - slack) or not monitor.connected:
+        rests = highest_m - JUMPS_M < up <= min(highest_m + RISES_M, altitude_relative_m - slack)
+        if not rests or not monitor.connected:
             highest_m, rises = up, Deadline(monitor.clock, RISES_S, RISES_WALL_S)
         return climbed() or snapshot.disarmed or rises.passed
 
