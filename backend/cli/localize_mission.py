@@ -11,20 +11,25 @@ from backend.events.bearings import BearingSource
 from backend.search.area import corner_of
 from backend.search.state import SearchState, evolve
 from backend.search.together import together
-from backend.store.exported import NotExported, export_of_today
+from backend.store.exported import ExportedLater, NotExported, export_of_today
+from hardware.direction_finding.table_file import decoded
 from planner.reason import text_of
 
 
 def exported_in(path: Path) -> list[Recorded] | None:
     """The events of an exported mission; None for a file of something else. Raises ValueError for one of neither."""
+    if not path.is_file():
+        return None  # whoever reads it as a table says what is wrong; and a pipe is read only once
     try:
-        text = path.read_bytes()
+        text = decoded(path.read_bytes())
     except OSError:
-        return None  # whoever reads it as a table says what is wrong
-    if not text.lstrip().startswith(b"{"):
+        return None
+    if not text.lstrip().startswith("{"):
         return None
     try:
         return list(export_of_today(json.loads(text))["events"])
+    except ExportedLater:
+        raise
     except (NotExported, ValueError, RecursionError) as error:
         raise ValueError(
             f"{path} holds no bearings that are read: of what Crossfix exports, take the journal (JSON) or the CSV"
@@ -62,11 +67,13 @@ def _emitter(state: SearchState, named: str | None) -> str:
     emitters = state.mission.emitters
     if named is None and len(emitters) == 1:
         return emitters[0].emitter_id
-    for number, one in enumerate(emitters, start=1):
-        if named in (one.emitter_id, one.label, str(number)):
-            return one.emitter_id
-    known = ", ".join(one.label or one.emitter_id for one in emitters)
-    raise ValueError(f"the mission looks for {known}: choose one with --tag")
+    ids = [one.emitter_id for one in emitters]
+    names = [state.mission.name_of(one) for one in ids]
+    numbers = [str(number) for number in range(1, len(ids) + 1)]
+    for known in (ids, names, [one.label for one in emitters], numbers):
+        if known.count(named or "") == 1:
+            return ids[known.index(named or "")]
+    raise ValueError(f"the mission looks for {', '.join(names)}: choose one with --tag")
 
 
 def _sources(fact: BeliefUpdated) -> list[dict[str, Any]]:

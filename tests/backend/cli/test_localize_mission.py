@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -108,3 +109,41 @@ def test_other_json_is_named_as_no_mission(tmp_path: Path) -> None:
     refused = CliRunner().invoke(APP, [str(path)])
     assert refused.exit_code == 2
     assert "take the journal (JSON) or the CSV" in refused.stderr
+
+
+def test_a_label_goes_before_a_number_and_two_of_one_label_are_told_apart(tmp_path: Path) -> None:
+    """`--tag 1` gave the first emitter, though a collar is called that."""
+
+    def answered(*labels: str, tag: str) -> int | str:
+        emitters = [EmitterSpec(emitter_id=f"emitter-{n}", label=one) for n, one in enumerate(labels, start=1)]
+        path = exported(tmp_path, SPEC.model_copy(update={"emitters": emitters}))
+        ran = CliRunner().invoke(APP, [path, "--tag", tag, "--json"])
+        return ran.stderr if ran.exit_code else json.loads(ran.stdout)["bearings"]
+
+    assert answered("2", "1", tag="1") == 0
+    assert answered("2", "1", tag="2") == len(BEARINGS)
+    assert "looks for fox 1, fox 2: choose one" in str(answered("fox", "fox", tag="fox"))
+    assert answered("fox", "fox", tag="fox 2") == 0
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_mission_is_read_as_an_editor_saves_it(tmp_path: Path, encoding: str) -> None:
+    path = Path(exported(tmp_path))
+    path.write_text(path.read_text(), encoding=encoding)
+    assert json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)["bearings"] == len(BEARINGS)
+
+
+def test_a_mission_of_a_later_crossfix_is_named_so(tmp_path: Path) -> None:
+    path = Path(exported(tmp_path))
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"form": 99}))
+    assert "a later Crossfix exported it" in CliRunner().invoke(APP, [str(path)]).stderr
+
+
+def test_bearings_that_come_through_a_pipe_are_read_once() -> None:
+    """As of `crossfix localize <(...)`: "holds no rows of data" was said of it."""
+    pipe, end = os.pipe()
+    os.write(end, b"lat,lon,bearing_deg\n0,179.999,45\n0,-179.995,315\n")
+    os.close(end)
+    answer = json.loads(CliRunner().invoke(APP, [f"/dev/fd/{pipe}", "--json"]).stdout)
+    os.close(pipe)
+    assert answer["bearings"] == 2
