@@ -44,3 +44,20 @@ it("says by itself, once the flight is over, that it was not the antenna that wa
 it("asks nothing while it flies", () => {
   expect(show(phase("flying"))).toEqual([]);
 });
+
+it("asks again once a bearing was left out after the flight, and not while nothing changes", async () => {
+  const asked = show(ended("localized"));
+  await act(async () => {});
+  await act(() => {
+    live.value = { ...live.value };
+  });
+  expect(asked).toHaveLength(1);
+  const { emitter_id } = bearings[0]!;
+  const at = { emitter_id, bearing_id: "a", heard: false, on_the_way: false };
+  const left = { kind: "bearing_excluded", ...at, by: "operator", reason: "" } as const;
+  const all = record(...live.value.events.map((one) => one.event), left, someBelief({ bearings: 1, digest: "other" }));
+  await act(() => {
+    live.value = { ...live.value, mission: missionAt(all, Number.POSITIVE_INFINITY), events: all };
+  });
+  expect(asked).toHaveLength(2);
+});

@@ -13,18 +13,13 @@ export function SavePattern({ proposed: { filename, text } }: { proposed: NonNul
   );
 }
 
+/** To be keyed by what it was asked of: it asks once. */
 export function AntennaDoubt({ missionId, emitterId }: { missionId: string; emitterId: string }) {
   const [found, setFound] = useState<AntennaReview | null>(null);
   useEffect(() => {
-    let isMeant = true;
-    const say = (answer: AntennaReview | null) => isMeant && setFound(answer);
-    say(null);
     // where it cannot be told, the button of the what-if says why
-    api.antennaReview(missionId, emitterId).then(say, () => say(null));
-    return () => {
-      isMeant = false;
-    };
-  }, [missionId, emitterId]);
+    api.antennaReview(missionId, emitterId).then(setFound, () => {});
+  }, []);
   if (!found?.doubt) return null;
   return (
     <div data-testid="antenna-doubt">

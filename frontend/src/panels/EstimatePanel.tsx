@@ -240,7 +240,7 @@ export function EstimatePanel() {
         </p>
       )}
       {ended && missionId && emitterId && bearings.length > 1 && source.value?.keptByServer && (
-        <AntennaDoubt missionId={missionId} emitterId={emitterId} />
+        <AntennaDoubt missionId={missionId} emitterId={emitterId} key={missionId + emitterId + belief?.seq} />
       )}
     </section>
   );
