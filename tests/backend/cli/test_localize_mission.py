@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import typer
+from facts import bearing
 from typer.testing import CliRunner
 
 from backend.cli.localize import localize
@@ -29,33 +30,23 @@ RING = [(place.lon, place.lat) for place in CORNERS]
 SPEC = MissionSpec(name="m", area=Polygon(coordinates=[RING]), sensor=SensorSpec(bearing_errors="joint"))
 
 
-def bearing(number: int, x: float, y: float, by: CraftSource | PersonSource, off_deg: float) -> BearingMeasured:
-    return BearingMeasured(
-        emitter_id="emitter-1",
-        source=by,
-        bearing_id=f"b{number}",
-        sweep_id=None,
-        place_number=number,
-        place=FRAME.to_geo(x, y),
-        altitude_amsl_m=140.0,
-        bearing_deg=(math.degrees(math.atan2(EMITTER[0] - x, EMITTER[1] - y)) + off_deg) % 360,
-        sigma_deg=6.0,
-        heading_sigma_deg=4.0,
-        quality=0.9,
-        peaks=[],
-        snr_db=20.0,
-        drift_m=0.2,
-        binned_db=[],
-        fitted_db=[],
-    )
+def taken(number: int, x: float, y: float, by: CraftSource | PersonSource, off_deg: float) -> BearingMeasured:
+    told = {
+        "sweep_id": None,
+        "place": FRAME.to_geo(x, y),
+        "bearing_deg": (math.degrees(math.atan2(EMITTER[0] - x, EMITTER[1] - y)) + off_deg) % 360,
+        "sigma_deg": 6.0,
+        "heading_sigma_deg": 4.0,
+    }
+    return bearing(number, "emitter-1", by).model_copy(update=told)
 
 
 CRAFT, ANNA = CraftSource(craft_id="craft-1"), PersonSource(name="anna")
 BEARINGS = [
-    bearing(1, 0, 0, CRAFT, 2.0),
-    bearing(2, 140, 60, ANNA, -9.0),
-    bearing(3, -100, 150, CRAFT, 2.0),
-    bearing(4, 60, 190, ANNA, -9.0),
+    taken(1, 0, 0, CRAFT, 2.0),
+    taken(2, 140, 60, ANNA, -9.0),
+    taken(3, -100, 150, CRAFT, 2.0),
+    taken(4, 60, 190, ANNA, -9.0),
 ]
 
 
