@@ -68,8 +68,10 @@ async def test_a_climb_that_pauses_for_eight_seconds_goes_on(flying: Scene, monk
 
 
 async def test_a_climb_that_stops_wavers_and_has_ended(flying: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    began_s = flying.clock.at
     with pytest.raises(VehicleError, match=r"climbed to 1\d\.\d m only"):
         await climbs(flying, lambda s: min(s, 10.5 + 0.4 * (round(s) % 2)), monkeypatch)
+    assert flying.clock.at - began_s == pytest.approx(10.5 + 10.0, abs=1.5), "ten seconds after it stopped"
 
 
 async def test_until_the_arming_is_answered_no_heartbeat_says_that_it_is_disarmed(flying: Scene) -> None:
