@@ -27,13 +27,14 @@ SENSOR = SensorSpec(
     measurement_time_s=16.0,
     bearing_errors="joint",
     shared_errors=True,
+    sweep_evidence="whole",
     sector_turns=True,
     listen_on_the_way=True,
     swing_on_the_way=True,
 )
 """Once around at 30 degrees a second, and four seconds to begin and to settle (decision 64). Errors of bearings are
-estimated with the place; a turn goes only as far as its bearing needs, and the nose swings between places so that what
-is heard there counts: decision 62 says what that brings."""
+estimated with the place, from all that sweeps tell of all directions (decision 75). A turn goes only as far as its
+bearing needs, and the nose swings between places so that what is heard there counts (decision 62)."""
 
 
 def suggested_mission(home: Place) -> MissionSpec:
@@ -47,8 +48,8 @@ def suggested_mission(home: Place) -> MissionSpec:
     return MissionSpec(name=NAME, area=area, sensor=SENSOR, planner=PLANNER)
 
 
-ESTIMATED = {"bearing_errors": "joint", "shared_errors": True}
-"""How new missions take the errors of bearings: estimated with the places, by the bearings of all emitters."""
+ESTIMATED = {"bearing_errors": "joint", "shared_errors": True, "sweep_evidence": "whole"}
+"""How new missions take the errors of bearings: estimated with the places, by all that sweeps of all emitters tell."""
 
 
 def with_errors_estimated(asked: MissionSpec) -> MissionSpec:
