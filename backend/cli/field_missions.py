@@ -228,7 +228,7 @@ class FieldStudy:
                     avoid.clear()
                     break
                 rejected += 1
-                if attempt > retakes(self.spec.sensor.maximum_retakes, bool(measured), found.reason):
+                if attempt > retakes(self.spec.sensor.maximum_retakes, bool(measured), found):
                     avoid.append(place)
                     break
             fact, belief = task.belief_fact(measured)

@@ -235,11 +235,11 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             return replace(state, accepted=True, reached=False)
         case SweepStarted(attempt=attempt):
             return replace(state, attempt=attempt, reached=False)
-        case SweepRejected(attempt=attempt, place=place, reason=reason) if _ours(state, event):
+        case SweepRejected(attempt=attempt, place=place) if _ours(state, event):
             if state.chosen is None:  # the same turn heard another emitter: this one is not to be sought here again
                 return replace(state, avoid=(*state.avoid, place))
             in_vain = state.in_vain | {attempt}  # one turn is rejected for each emitter that it did not hear
-            if len(in_vain) <= retakes(state.maximum_retakes, state.has_bearing, reason):
+            if len(in_vain) <= retakes(state.maximum_retakes, state.has_bearing, event):
                 return replace(state, in_vain=in_vain)
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
@@ -270,13 +270,17 @@ def _counted_anew(state: CraftState, event: BearingExcluded | BearingIncluded) -
     return after if after.has_bearing else replace(after, avoid=(*after.avoid, *(place for _, place in after.taken)))
 
 
-def retakes(most: int, has_bearing: bool, reason: Reason) -> int:
-    """How often a turn that was rejected for this is made again at its place, at most `most` times.
+def retakes(most: int, has_bearing: bool, event: SweepRejected) -> int:
+    """How often a turn that was rejected so is made again at its place, at most `most` times.
 
-    Before the first bearing a place may happen to lie right above the emitter. Most sweeps from there do not look like
-    the antenna, and a repeated one that does points away from the emitter: the place is left at once (decision 70).
+    Not at all where a whole turn heard nothing and says what it listened to: that counts (decision 76), and the next
+    place tells more than silence there again. Before the first bearing a place may happen to lie right above the
+    emitter. Most sweeps from there do not look like the antenna, and a repeated one that does points away from the
+    emitter: the place is left at once (decision 70).
     """
-    return 0 if isinstance(reason, UnlikeAntenna) and not has_bearing else most
+    whole = event.turn is None or not event.turn.partial
+    unlike = isinstance(event.reason, UnlikeAntenna) and not has_bearing
+    return 0 if unlike or (whole and event.silence is not None) else most
 
 
 def _ours(state: CraftState, event: SweepRejected | BearingMeasured) -> bool:

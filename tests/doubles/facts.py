@@ -15,9 +15,11 @@ from backend.events import (
     PlanChosen,
     SilenceFact,
     SweepRejected,
+    TurnFact,
 )
 from backend.reasons.flight import Ordered, VehicleLinkLost, WatchBroke
 from backend.reasons.safety import BatteryShort, BatterySilent, OutsideFence
+from backend.reasons.turning import MaximumSeen, SectorExpected
 from backend.spec import (
     FIRST_EMITTER,
     EmitterSpec,
@@ -170,6 +172,19 @@ def silent(attempt: int = 1, number: int = 1, emitter_id: str = FIRST_EMITTER) -
     """Listened all around with an antenna that hears to every side, and heard nothing."""
     told = SilenceFact(chances=[1.0] * 16, gain_db=[0.0] * 36)
     return rejected(attempt, number, emitter_id).model_copy(update={"silence": told})
+
+
+def in_sector(swept: SweepRejected) -> SweepRejected:
+    """The same of a turn that left most of the circle out."""
+    turn = TurnFact(
+        begin_deg=30.0,
+        planned_deg=120.0,
+        turned_deg=120.0,
+        planned_because=SectorExpected(120.0, 95.0),
+        went_on_because=[],
+        stopped_because=MaximumSeen(120.0, 40.0, 1.0),
+    )
+    return swept.model_copy(update={"turn": turn})
 
 
 def belief(bearings: int = 0, localized: bool = False, emitter_id: str = FIRST_EMITTER) -> BeliefUpdated:

@@ -9,7 +9,7 @@ import pytest
 from craft_inputs import CLOCK_ODD
 from craft_sweep import Step, reachable, stepped, steps
 from craft_walk import PHASES, VEHICLE, moves, ordered, sent
-from facts import HOME, rejected
+from facts import HOME, in_sector, rejected, silent
 
 from backend import commands
 from backend.craft import effects, inputs
@@ -22,7 +22,7 @@ from backend.events import OrderDone, OrderNotDone
 from backend.reasons.flight import OrderName
 from backend.search.effects import Record
 from hardware.reasons.receiver import SamplesLost
-from hardware.reasons.sweep import NoDirection, UnlikeAntenna
+from hardware.reasons.sweep import UnlikeAntenna
 
 # A million steps, made once, and without the tracer that would make them five times as slow.
 pytestmark = [pytest.mark.no_cover, pytest.mark.timeout(900)]
@@ -262,22 +262,29 @@ def test_what_safety_forbids_on_the_ground_sends_nothing_and_ends_no_search() ->
     assert seen > 5
 
 
-def test_a_place_is_left_at_once_before_the_first_bearing_only_and_only_for_a_sweep_unlike_the_antenna() -> None:
-    """Whether another turn is made there, in every state that measures, each turn and each reason."""
+def test_a_place_is_left_at_once_for_a_first_sweep_unlike_the_antenna_and_for_silence_all_round() -> None:
+    """Whether another turn is made there, in every state that measures, each turn and each way to be rejected."""
     seen = 0
     for craft, search in reachable():
         if craft.phase != "measuring" or craft.chosen is None:
             continue
-        for has_bearing, reason in product((False, True), (UnlikeAntenna(0.5, 0.7), NoDirection())):
+        number = craft.place_number
+        for has_bearing, kind in product((False, True), ("unlike", "no direction", "silent", "silent in a sector")):
             attempts = frozenset(range(1, 4))
             for attempt in attempts:
                 vain = frozenset(one for one in attempts if one < attempt)
                 before = (("b9", HOME),)
                 left_out = frozenset[str]() if has_bearing else frozenset({"b9"})
                 turns = replace(craft, taken=before, left_out=left_out, attempt=attempt, in_vain=vain)
-                swept = rejected(attempt, craft.place_number).model_copy(update={"reason": reason})
+                swept = {
+                    "unlike": rejected(attempt, number).model_copy(update={"reason": UnlikeAntenna(0.5, 0.7)}),
+                    "no direction": rejected(attempt, number),
+                    "silent": silent(attempt, number),
+                    "silent in a sector": in_sector(silent(attempt, number)),
+                }[kind]
                 step = stepped(turns, search, inputs.SweepTaken((swept,)))
-                left = attempt > craft.maximum_retakes or (isinstance(reason, UnlikeAntenna) and not has_bearing)
+                at_once = kind == "silent" or (kind == "unlike" and not has_bearing)
+                left = at_once or attempt > craft.maximum_retakes
                 assert (step.after.chosen is None) == left, step.about
                 assert (effects.Measure in map(type, step.asked)) == (not left), step.about
                 assert (swept.place in step.after.avoid) == left or swept.place in craft.avoid, step.about

@@ -11,6 +11,7 @@ from facts import (
     TWO_SPEC,
     WAITING_SPEC,
     bearing,
+    in_sector,
     plan,
     rejected,
     silent,
@@ -88,21 +89,26 @@ def test_one_craft_finds_two_emitters_with_the_same_turns_and_comes_home_when_bo
 
 def test_after_a_silent_place_the_next_is_planned_with_what_the_silence_tells() -> None:
     walk = Walk().to("measuring")
-    for attempt in range(1, SPEC.sensor.maximum_retakes + 1):
-        asked = walk.to_craft(inputs.SweepTaken((silent(attempt),)))
-        assert UpdateBelief(FIRST_EMITTER) in asked
-        assert walk.craft.phase == "measuring"
-        assert sent(walk.believe()) == [], "a belief does not disturb the turn that is taken again"
-    walk.to_craft(inputs.SweepTaken((silent(SPEC.sensor.maximum_retakes + 1),)))
-    assert walk.craft.phase == "planning"
+    asked = walk.to_craft(inputs.SweepTaken((silent(),)))
+    assert UpdateBelief(FIRST_EMITTER) in asked
+    assert walk.craft.phase == "planning", "to hear nothing there once more would tell hardly anything"
     (planned,) = of_craft(walk.believe())
     assert isinstance(planned, effects.PlanNext)
     assert planned.avoid == (walk.craft.avoid[-1],)
     assert fold(walk.recorded) == walk.state
 
 
+def test_a_belief_does_not_disturb_the_turn_that_is_taken_again() -> None:
+    """A sector in which nothing was heard leaves the rest of the circle, and the turn made again is whole."""
+    walk = Walk().to("measuring")
+    asked = walk.to_craft(inputs.SweepTaken((in_sector(silent()),)))
+    assert UpdateBelief(FIRST_EMITTER) in asked
+    assert walk.craft.phase == "measuring"
+    assert sent(walk.believe()) == []
+
+
 def test_before_there_is_a_bearing_a_place_that_may_lie_above_the_emitter_is_left_at_once() -> None:
-    """Where a sweep is unlike the antenna; one of which nothing was heard is taken again, as any later one is."""
+    """Where a sweep is unlike the antenna; any later one is taken again."""
     walk = Walk().to("measuring")
     here = walk.craft.chosen
     assert here is not None
@@ -129,9 +135,9 @@ def test_turns_that_were_broken_off_are_not_counted_as_turns_in_vain() -> None:
     begun = walk.craft.attempt
     assert begun == SPEC.sensor.maximum_retakes + 2
     for retake in range(SPEC.sensor.maximum_retakes):
-        walk.to_craft(inputs.SweepTaken((silent(begun + retake),)))
+        walk.to_craft(inputs.SweepTaken((rejected(begun + retake),)))
         assert walk.craft.phase == "measuring", f"{retake} of {SPEC.sensor.maximum_retakes} turns were taken again"
-    walk.to_craft(inputs.SweepTaken((silent(begun + SPEC.sensor.maximum_retakes),)))
+    walk.to_craft(inputs.SweepTaken((rejected(begun + SPEC.sensor.maximum_retakes),)))
     assert walk.craft.phase == "planning"
     assert fold(walk.recorded) == walk.state
 
@@ -139,10 +145,10 @@ def test_turns_that_were_broken_off_are_not_counted_as_turns_in_vain() -> None:
 def test_a_turn_that_heard_no_emitter_of_two_is_one_turn_in_vain() -> None:
     walk = Walk(TWO_SPEC).to("flying").arrive()
     for attempt in range(1, SPEC.sensor.maximum_retakes + 1):
-        walk.to_craft(inputs.SweepTaken((silent(attempt), silent(attempt, emitter_id=SECOND))))
+        walk.to_craft(inputs.SweepTaken((rejected(attempt), rejected(attempt, emitter_id=SECOND))))
         assert walk.craft.phase == "measuring"
     last = SPEC.sensor.maximum_retakes + 1
-    walk.to_craft(inputs.SweepTaken((silent(last), silent(last, emitter_id=SECOND))))
+    walk.to_craft(inputs.SweepTaken((rejected(last), rejected(last, emitter_id=SECOND))))
     assert walk.craft.phase == "planning"
 
 
