@@ -20,6 +20,7 @@ from backend.search.localization import localization
 from planner.belief import evidence
 from planner.belief.grid import GridBelief, fold
 from planner.belief.joint import joint_prior, update_joint
+from planner.observation import wrap
 from planner.plan import plan
 from planner.types import Bearing
 from tests.benchmarks.figures.circumstances import begin
@@ -29,6 +30,7 @@ from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 TARGET = (60.0, 120.0)
 PLACES = ((0.0, -40.0), (140.0, 60.0), (0.0, 190.0), (-60.0, 60.0), (120.0, 200.0), (60.0, -40.0))
 OWN = np.deg2rad(5.3)
+FOOT = 1e-3
 BUDGET = 1000
 
 
@@ -40,6 +42,12 @@ def bearings() -> list[Bearing]:
         Bearing(x, y, float(direction + error), float(OWN), source="craft")
         for (x, y), direction, error in zip(PLACES, directions, errors, strict=True)
     ]
+
+
+def of_sweep(bearing: Bearing) -> Bearing:
+    """With a whole sweep's likelihood that says the same, and an even foot."""
+    off = wrap(np.deg2rad(np.arange(360.0)) - bearing.angle) / bearing.sigma
+    return replace(bearing, profile=tuple(np.log(np.exp(-0.5 * off**2) + FOOT).tolist()))
 
 
 def milliseconds(repeats: int, work: Callable[[], Any]) -> float:
@@ -67,17 +75,18 @@ def figures(repeats: int) -> list[Figure]:
     for count in (3, 6):
         seen = bearings()[:count]
         alone = [replace(b, sigma=float(np.hypot(b.sigma, np.deg2rad(4.0))), outlier_probability=0.1) for b in seen]
-        before = joint_prior(problem)
+        before = before_whole = joint_prior(problem)
         for bearing in seen[:-1]:
             before = update_joint(before, bearing)
-        after = update_joint(before, seen[-1])
+            before_whole = update_joint(before_whole, of_sweep(bearing))
+        after, last_whole = update_joint(before, seen[-1]), of_sweep(seen[-1])
+        after_whole = update_joint(before_whole, last_whole)
         independent = fold(problem, alone)
 
-        def planned(belief: GridBelief, count: int = count) -> float:
-            return milliseconds(
-                repeats,
-                lambda: plan(problem, belief, bearings()[:count], PLACES[count - 1], replace(options, budget=BUDGET)),
-            )
+        def planned(
+            belief: GridBelief, taken: list[Bearing] = seen, here: tuple[float, float] = PLACES[count - 1]
+        ) -> float:
+            return milliseconds(repeats, lambda: plan(problem, belief, taken, here, replace(options, budget=BUDGET)))
 
         def grown(belief: Any = before, last: Bearing = seen[-1], **more: Any) -> float:
             return milliseconds(repeats, lambda: update_joint(belief, last, **more))
@@ -87,11 +96,22 @@ def figures(repeats: int) -> list[Figure]:
             plain(f"joint belief, bearing {count}", round(grown(), 1), "ms", note=f"{after.density.size} cells"),
             plain(f"the same, numpy reference, bearing {count}", round(grown(weighing=evidence.Weigher), 1), "ms"),
             plain(
+                f"joint belief of whole sweeps, bearing {count}",
+                round(grown(before_whole, last_whole), 1),
+                "ms",
+                note=f"{after_whole.density.size} cells",
+            ),
+            plain(
                 f"independent belief, all {count} bearings",
                 round(milliseconds(repeats, lambda a=alone: fold(problem, a)), 1),
                 "ms",
             ),
             plain(f"plan from the joint belief, N = {BUDGET}, bearing {count}", joint_ms, "ms"),
+            plain(
+                f"plan from the joint belief of whole sweeps, N = {BUDGET}, bearing {count}",
+                round(planned(after_whole, [of_sweep(b) for b in seen]), 1),
+                "ms",
+            ),
             plain(f"plan from the independent belief, N = {BUDGET}, bearing {count}", plain_ms, "ms"),
             over_plain(joint_ms, plain_ms, count),
         ]
