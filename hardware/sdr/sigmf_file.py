@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import errno
 import json
-import math
 import os
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeGuard
 
 import numpy as np
 import sigmf
 from numpy.typing import NDArray
 
-from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError
+from hardware.direction_finding.table_file import LARGEST, LONGEST_CELL, RecordingError
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.readings import Place
 from hardware.reasons.iq_recording import (
@@ -37,7 +37,8 @@ AZIMUTH_KEY: Final = "antenna:azimuth_angle"
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A capture: samples from `first` on. at_s: UTC epoch seconds of its first sample, None when not stated."""
+    """A capture: samples from `first` on. at_s: UTC epoch seconds of its first sample, None where no capture states a
+    time."""
 
     first: int
     at_s: float | None
@@ -96,7 +97,7 @@ class SigmfRecording:
     @property
     def dated(self) -> bool:
         """Whether a capture states its time."""
-        return any(segment.at_s is not None for segment in self.segments)
+        return self.segments[0].at_s is not None
 
     @property
     def duration_s(self) -> float:
@@ -104,12 +105,11 @@ class SigmfRecording:
         return self.time_of(self.samples.size - 1) + 1.0 / self.sample_rate_hz - self.start_s
 
     def time_of(self, sample: int) -> float:
-        """UTC epoch seconds of a sample: its capture's time, or counted on from the last capture that states one, or
-        back from the first."""
-        stated = [(segment.first, segment.at_s) for segment in self.segments if segment.at_s is not None]
-        before = [one for one in stated if one[0] <= sample]
-        first, at_s = before[-1] if before else stated[0] if stated else (0, 0.0)
-        return at_s + (sample - first) / self.sample_rate_hz
+        """UTC epoch seconds of a sample, counted on from its capture's first, or back from the first capture's."""
+        if not self.dated:
+            return sample / self.sample_rate_hz
+        its = self.segments[max(bisect_right(self.segments, sample, key=lambda one: one.first) - 1, 0)]
+        return (its.at_s or 0.0) + (sample - its.first) / self.sample_rate_hz
 
     def blocks(self, size: int) -> Iterator[IqBlock]:
         """`size` samples each, capture by capture at its own time; that time went by between two counts as loss."""
@@ -130,16 +130,17 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
     if rate is None:
         raise RecordingError(SigmfFieldMissing(str(path), "core:sample_rate"))
-    if not isinstance(rate, int | float) or not (math.isfinite(rate) and rate > 0):
+    if not _is_number(rate) or rate <= 0:
         raise _unusable(path, "core:sample_rate", rate)
-    tuned = {capture[sigmf.FREQUENCY_KEY] for capture in captures if sigmf.FREQUENCY_KEY in capture}
+    tuned = [capture[sigmf.FREQUENCY_KEY] for capture in captures if sigmf.FREQUENCY_KEY in capture]
     if not tuned:
         raise RecordingError(SigmfFieldMissing(str(path), "core:frequency"))
-    if len(tuned) > 1:
-        raise _unusable(path, "core:frequency", ", ".join(map(str, tuned)))
-    centre = tuned.pop()
-    if not isinstance(centre, int | float) or not math.isfinite(centre):
-        raise _unusable(path, "core:frequency", centre)
+    for stated in tuned:
+        if not _is_number(stated):
+            raise _unusable(path, "core:frequency", stated)
+    if len(set(tuned)) > 1:
+        raise _unusable(path, "core:frequency", ", ".join(map(str, sorted(set(tuned)))))
+    centre = tuned[0]
     try:
         samples = Samples(recording)
         first = recording.read_samples(0, 1) if samples.size else None
@@ -155,7 +156,7 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
         recording.num_channels,
         float(rate),
         float(centre),
-        _segments(path, captures),
+        _segments(path, captures, rate),
         _azimuths(path, recording, captures, samples.size),
         _place(path, recording, captures),
     )
@@ -163,6 +164,11 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
 
 def _unusable(path: Path, field: Field, value: object) -> RecordingError:
     return RecordingError(SigmfFieldUnusable(str(path), field, str(value)[:LONGEST_CELL]))
+
+
+def _is_number(value: object) -> TypeGuard[int | float]:
+    """JSON knows whole numbers that no float holds."""
+    return isinstance(value, int | float) and abs(value) <= LARGEST
 
 
 def _opened(path: Path) -> sigmf.SigMFFile:
@@ -200,18 +206,26 @@ def _refuse_unread(meta: Path) -> None:
 def _whole(path: Path, stated: dict[str, Any], key: str) -> int:
     """How many samples, 0 where it is not stated."""
     count = stated.get(key) or 0
-    if not isinstance(count, int | float) or count < 0 or count % 1 != 0:
+    if not _is_number(count) or count < 0 or count % 1 != 0:
         raise RecordingError(FileUnreadable(str(path), f"{key}: {count!r}"[:LONGEST_CELL]))
     return int(count)
 
 
-def _segments(path: Path, captures: Sequence[dict[str, Any]]) -> tuple[Segment, ...]:
-    segments = tuple(Segment(_whole(path, c, sigmf.SAMPLE_START_KEY), _time(path, c)) for c in captures)
-    stated = [segment.at_s for segment in segments if segment.at_s is not None]
-    for before, after in pairwise(stated):
-        if after < before:
-            raise _unusable(path, "core:datetime", datetime.fromtimestamp(after, UTC).isoformat())
-    return segments
+def _segments(path: Path, captures: Sequence[dict[str, Any]], rate_hz: float) -> tuple[Segment, ...]:
+    """Where a capture states no time, counted on from the last that states one, or back from the first."""
+    firsts, times = [_whole(path, c, sigmf.SAMPLE_START_KEY) for c in captures], [_time(path, c) for c in captures]
+    stated = [(first, at_s) for first, at_s in zip(firsts, times, strict=True) if at_s is not None]
+    if not stated:
+        return tuple(Segment(first, None) for first in firsts)
+    segments: list[Segment] = []
+    known, known_s = stated[0]
+    for capture, first, at_s in zip(captures, firsts, times, strict=True):
+        if at_s is not None:
+            if at_s < known_s:
+                raise _unusable(path, "core:datetime", capture[sigmf.DATETIME_KEY])
+            known, known_s = first, at_s
+        segments.append(Segment(first, known_s + (first - known) / rate_hz))
+    return tuple(segments)
 
 
 def _time(path: Path, capture: dict[str, Any]) -> float | None:
@@ -247,7 +261,7 @@ def _azimuths(
 
 
 def _degrees(path: Path, value: object) -> float:
-    if not isinstance(value, int | float) or not math.isfinite(value):
+    if not _is_number(value):
         raise _unusable(path, AZIMUTH_KEY, value)
     return float(value) % 360.0
 
@@ -260,7 +274,7 @@ def _place(path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, 
         return None
     try:
         lon, lat = (float(value) for value in stated[0]["coordinates"][:2])
-    except (TypeError, ValueError, KeyError):
+    except (TypeError, ValueError, KeyError, OverflowError):
         raise _unusable(path, "core:geolocation", stated[0]) from None
     if not (abs(lat) <= 90.0 and abs(lon) <= 180.0):
         raise _unusable(path, "core:geolocation", stated[0])

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
+from datetime import UTC, datetime
 from pathlib import Path
+from time import process_time
 from typing import Any
 
 import numpy as np
 import pytest
 from refusals import refusing
 
-from hardware.direction_finding.table_file import RecordingError
+from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError
 from hardware.reasons.iq_recording import FirstChannelUsed, SigmfFieldUnusable
 from hardware.reasons.table import FileUnreadable
 from hardware.sdr.rotation import IqReading, read_rotation
 from hardware.sdr.rotation_headings import annotated_headings
-from hardware.sdr.sigmf_file import Azimuth, load_sigmf, write_sigmf
+from hardware.sdr.sigmf_file import AZIMUTH_KEY, Azimuth, load_sigmf, write_sigmf
 from hardware.sdr.sigmf_playback import SigmfSource
 
 RATE_HZ = 2000.0
@@ -153,3 +155,44 @@ def test_captures_whose_time_goes_back_are_refused(tmp_path: Path) -> None:
         load_sigmf(as_stated(tmp_path, capture(0, LATER), capture(1000, EARLIER)))
     assert isinstance(refused.value.reason, SigmfFieldUnusable)
     assert refused.value.reason.field == "core:datetime"
+
+
+def test_a_time_that_goes_back_beyond_all_years_is_refused(tmp_path: Path) -> None:
+    before_christ = "0001-01-01T00:00:00+14:00"
+    with refusing(
+        SigmfFieldUnusable(str(tmp_path / "stated.sigmf-meta"), "core:datetime", before_christ), RecordingError
+    ):
+        load_sigmf(as_stated(tmp_path, capture(0, EARLIER), capture(1000, before_christ)))
+
+
+@pytest.mark.parametrize("frequency", [[CENTRE_HZ], {}, "150 MHz", 10**400], ids=["list", "object", "text", "huge"])
+def test_a_frequency_that_is_no_number_is_named(tmp_path: Path, frequency: Any) -> None:
+    path = as_stated(tmp_path, capture(0), capture(1000) | {"core:frequency": frequency})
+    with refusing(SigmfFieldUnusable(str(path), "core:frequency", str(frequency)[:LONGEST_CELL]), RecordingError):
+        load_sigmf(path)
+
+
+@pytest.mark.parametrize(
+    "stated",
+    [
+        {"captures": [capture(10**400)]},
+        {"captures": [capture(0) | {AZIMUTH_KEY: 10**400}]},
+        {"captures": [capture(0) | {"core:geolocation": {"type": "Point", "coordinates": [10**400, 1]}}]},
+        {"sample_rate": 10**400},
+    ],
+)
+def test_whole_numbers_that_no_float_holds_are_refused(tmp_path: Path, stated: dict[str, Any]) -> None:
+    path = changed(write_sigmf(tmp_path / "two", ramp(2000), RATE_HZ, CENTRE_HZ, BEGAN_S), **stated)
+    with pytest.raises(RecordingError):
+        load_sigmf(path)
+
+
+def test_thousands_of_captures_are_read_in_no_time(tmp_path: Path) -> None:
+    """A receiver that loses samples begins one at each loss: every one looked at all the others, for minutes."""
+    path = write_sigmf(tmp_path / "many", ramp(6000), RATE_HZ, CENTRE_HZ, BEGAN_S)
+    stamps = (datetime.fromtimestamp(BEGAN_S + k, UTC).isoformat() for k in range(6000))
+    recorded = load_sigmf(changed(path, [capture(k, stamp) for k, stamp in enumerate(stamps)]))
+    began_s = process_time()
+    times = [block.at_s for block in recorded.blocks(1000)]
+    assert times == pytest.approx(BEGAN_S + np.arange(6000))
+    assert process_time() - began_s < 5.0
