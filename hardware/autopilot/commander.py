@@ -50,7 +50,12 @@ class CommandLost(VehicleError):
 
 
 class OutOfMode(VehicleError):
-    """Nothing was sent: the vehicle is not in the mode in which it obeys the command, though nobody took it."""
+    """The vehicle is not in the mode in which it obeys the command, though nobody took it. sent: once at least, before
+    it left that; its answer is not known."""
+
+    def __init__(self, reason: ModeLeft, sent: bool) -> None:
+        super().__init__(reason)
+        self.sent = sent
 
 
 class ManoeuvreSuperseded(VehicleError):
@@ -146,7 +151,7 @@ class Commander:
             self.check(manoeuvre)
             self._control.see(CommandSent(modes))
             if not allowed():
-                raise OutOfMode(ModeLeft(command))
+                raise OutOfMode(ModeLeft(command), sent=order.sent_at_s is not None)
             result = await self._exchange(outgoing, order, attempt, allowed)
             self.check(manoeuvre)
             if result in outgoing.delivered:
@@ -179,9 +184,10 @@ class Commander:
             fields = fields | {"confirmation": attempt - 1}
 
         def goes() -> bool:
-            if order.sent_at_s is None:
+            may = allowed()
+            if may and order.sent_at_s is None:
                 order.sent_at_s = time.monotonic()
-            return allowed()
+            return may
 
         waiting = self._waiting[outgoing.number]
         waiting.append(order)

@@ -63,8 +63,9 @@ async def _arm(guidance: Guidance, manoeuvre: Manoeuvre) -> None:
     before_s, snapshot.arming_at_s = snapshot.arming_at_s, math.inf
     try:
         await guidance.send(manoeuvre, arm(), guidance.monitor.dialect.take_off_modes, "arming")
-    except (CommandDenied, OutOfMode):
-        snapshot.arming_at_s = before_s
+    except (CommandDenied, OutOfMode) as not_done:
+        if not (isinstance(not_done, OutOfMode) and not_done.sent):
+            snapshot.arming_at_s = before_s
         raise
     finally:
         snapshot.arming_at_s = min(snapshot.arming_at_s, clock.now())

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 
 import pytest
-from paper import PLACE, Scene
+from paper import ON_GROUND, PLACE, Scene, heartbeat
 
+from hardware.autopilot.ardupilot import BRAKE, GUIDED
 from hardware.autopilot.commander import ManoeuvreSuperseded
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.messages import ARM
@@ -93,3 +95,26 @@ async def test_until_the_arming_is_answered_no_heartbeat_says_that_it_is_disarme
     with pytest.raises(ManoeuvreSuperseded):
         await ordered
     assert not flying.monitor.snapshot.disarmed, "it agreed just now"
+
+
+async def test_an_arming_whose_answer_another_mode_cut_off_may_have_been_done() -> None:
+    """What stops it was refused until a heartbeat came, as if it had not been sent."""
+    scene = Scene(
+        (heartbeat(GUIDED, False)[0], heartbeat(GUIDED, False)[1] | {"autopilot": 3}),
+        ("EXTENDED_SYS_STATE", {"landed_state": ON_GROUND}),
+        ("GLOBAL_POSITION_INT", PLACE | {"relative_alt": 0}),
+    )
+    await scene.monitor.connect(1.0)
+    await scene.monitor.close()
+    scene.monitor.connected = True
+    scene.link.answers = False
+    snapshot = scene.monitor.snapshot
+    assert snapshot.disarmed
+    ordered = asyncio.create_task(take_off(Guidance(scene.monitor), TARGET_M))
+    while ARM not in scene.link.sent:  # noqa: ASYNC110 (nothing else is moved)
+        await asyncio.sleep(0)
+    scene.hear("HEARTBEAT", {"custom_mode": BRAKE, "base_mode": 1, "autopilot": 3})
+    while snapshot.arming_at_s == math.inf:  # noqa: ASYNC110
+        await asyncio.sleep(0)
+    assert not snapshot.disarmed
+    ordered.cancel()
