@@ -170,6 +170,16 @@ it("what was ordered while the machine slept, before the press, is heard after i
   expect(source.done).toEqual(["hold"]);
 });
 
+it("a machine that slept since a status was heard knows what was ordered before the press, and it ends nothing", async () => {
+  begin({ hold: ["lost"] });
+  void sendUrgent(M, "hold");
+  await pass(100);
+  hear(0, told(-10_000, theirs));
+  vi.setSystemTime(Date.now() + 30_000);
+  await pass();
+  expect(source.done).toEqual(["hold"]);
+});
+
 it("the time that an example told says nothing of the mission that is shown instead", async () => {
   begin({ hold: ["lost", "lost"] });
   hear(-86_400_000);

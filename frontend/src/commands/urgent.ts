@@ -73,7 +73,7 @@ effect(() => {
 const toOf = ({ id, craftId }: Flown): string => id ?? craftId;
 const ordersTo = (to: string): Order[] => [...underWay].filter((order) => order.to === to && !order.isEnded);
 const clocks = (): readonly [number, number] => [Date.now(), performance.now()];
-const sinceMs = ({ pressedMs }: Order): number => Math.max(...clocks().map((now, clock) => now - pressedMs[clock]!));
+const betweenMs = ({ pressedMs }: Order, then = clocks()): number => Math.max(...then.map((ms, clock) => ms - pressedMs[clock]!));
 
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -111,11 +111,19 @@ function isSteering({ event }: Recorded, craftId: string): boolean {
   return event.kind === "command_accepted" && STEERING.includes(event.command) && !ownIds.has(event.command_id);
 }
 
+/** When the last status was heard: the machine may have slept before it, or since. */
+let heardMs = clocks();
+const told = computed(() => live.value.status);
+effect(() => {
+  void told.value;
+  heardMs = clocks();
+});
+
 /** After when it was surely pressed, by the server's clock as heard since: what was known of that before a sleep is old. */
 function surelyAfterMs(order: Order): number {
   const { status, beganMs, hello } = live.peek();
   if (!status || status.atMs <= Math.max(beganMs, order.pressedMs[1])) return Infinity;
-  return Date.parse(status.value.at_utc) + (performance.now() - status.atMs - sinceMs(order) + CLOCKS_MS) * (hello?.time_factor ?? 1);
+  return Date.parse(status.value.at_utc) + (CLOCKS_MS - betweenMs(order, heardMs)) * (hello?.time_factor ?? 1);
 }
 
 /** Has somebody else, or the mission by itself, ordered something since? As far as the journal is heard here. */
@@ -189,7 +197,7 @@ async function give(flown: Flown, kind: Urgent): Promise<void> {
   tell(press, null);
   underWay.add(own);
   for (let tries = 0; !own.isEnded; ) {
-    const left = GIVE_UP_MS - sinceMs(own);
+    const left = GIVE_UP_MS - betweenMs(own);
     if (left <= 0) {
       giveUp("bar.unanswered");
       break;
