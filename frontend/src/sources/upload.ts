@@ -22,14 +22,16 @@ export function upload<Answer>(
       request.upload.onprogress = (event) => {
         if (event.lengthComputable) onProgress(event.loaded / event.total);
       };
-      request.onerror = request.onabort = () => reject(unreachable(t("problem.upload")));
+      const fail = () => reject(unreachable(t("problem.upload")));
+      request.onerror = request.onabort = fail;
       request.onload = () => {
-        const answer = new Response(request.responseText || null, {
-          status: Math.min(request.status, 599), // a Response takes none beyond
+        const { status, responseText } = request;
+        const answer = new Response(status === 205 ? null : responseText || null, {
+          status: Math.min(status, 599), // a Response takes none beyond, and none of 205 has a body
           headers: { "content-type": request.getResponseHeader("content-type") ?? "" },
         });
         if (answer.ok)
-          answer.json().then(resolve, () => reject(unreachable(t("problem.upload")))); // some proxy's own page
+          answer.json().then(resolve, fail); // some proxy's own page
         else void problemOf(answer).then(reject, reject);
       };
       request.send(file);
