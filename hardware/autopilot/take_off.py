@@ -46,9 +46,10 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
     def ended() -> bool:
         nonlocal highest_m, rises
         up = snapshot.altitude_relative_m or 0.0
-        rests = highest_m - JUMPS_M < up <= min(highest_m + RISES_M, altitude_relative_m - slack)
-        if not rests or not monitor.connected:
+        if up > min(highest_m + RISES_M, altitude_relative_m - slack) or not monitor.connected:
             highest_m, rises = up, Deadline(monitor.clock, RISES_S, RISES_WALL_S)
+        elif up <= highest_m - JUMPS_M:
+            highest_m = up
         return climbed() or snapshot.disarmed or rises.passed
 
     await guidance.until(manoeuvre, Deadline(monitor.clock, 30.0 + altitude_relative_m / 0.5), ended)

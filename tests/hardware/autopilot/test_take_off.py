@@ -76,6 +76,14 @@ async def test_a_climb_that_stops_wavers_and_has_ended(flying: Scene, monkeypatc
     assert flying.clock.at - began_s == pytest.approx(10.5 + 10.0, abs=1.5), "ten seconds after it stopped"
 
 
+async def test_a_climb_that_becomes_a_slow_descent_has_ended(flying: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every two metres that it sank were taken for a jump, and it was waited for until the end of the whole climb."""
+    began_s = flying.clock.at
+    with pytest.raises(VehicleError, match=r"climbed to 1\d\.\d m only"):
+        await climbs(flying, lambda s: min(s, 20.0 - 0.3 * (s - 20.0)), monkeypatch)
+    assert flying.clock.at - began_s == pytest.approx(20.0 + 10.0, abs=1.5)
+
+
 async def test_until_the_arming_is_answered_no_heartbeat_says_that_it_is_disarmed(flying: Scene) -> None:
     """Over a slow link one that left before the order came long after it: a return was refused, and it took off."""
     flying.heartbeat(HOLD, armed=False)
