@@ -11,6 +11,7 @@ from backend.events.bearings import BearingSource
 from backend.search.area import corner_of
 from backend.search.state import SearchState, evolve
 from backend.search.together import together
+from backend.store.brought_facts import number_of, unfit
 from backend.store.exported import ExportedLater, NotExported, export_of_today
 from hardware.direction_finding.table_file import decoded
 from planner.reason import text_of
@@ -27,13 +28,18 @@ def exported_in(path: Path) -> list[Recorded] | None:
     if not text.lstrip().startswith("{"):
         return None
     try:
-        return list(export_of_today(json.loads(text))["events"])
+        exported = json.loads(text, parse_float=number_of, parse_int=number_of)
+        recorded: list[Recorded] = export_of_today(exported)["events"]
     except ExportedLater:
         raise
     except (NotExported, ValueError, RecursionError) as error:
         raise ValueError(
             f"{path} holds no bearings that are read: of what Crossfix exports, take the journal (JSON) or the CSV"
         ) from error
+    wrong = unfit(recorded)
+    if wrong is not None:
+        raise ValueError(f"{path} is no journal as Crossfix exports it: event {wrong.seq} is none that it records")
+    return recorded
 
 
 def localize_mission(recorded: list[Recorded], named: str | None) -> dict[str, Any]:

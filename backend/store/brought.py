@@ -25,7 +25,7 @@ from backend.events import Event, MissionBroughtIn, MissionRestored, Recorded
 from backend.mission.state import fold as fold_mission
 from backend.ports import TrackPoint
 from backend.reasons.request import BundleFactWrong, BundleFileWrong, BundleUnreadable
-from backend.store.brought_facts import is_id, of_emitters_looked_for, on_earth, unfit
+from backend.store.brought_facts import LARGEST, is_id, number_of, of_emitters_looked_for, on_earth, unfit
 from backend.store.digest import MissionDigest, fold, to_columns
 from backend.store.entries import EventRow, SweepEntry, TrackEntry, decode, to_records, to_row
 from backend.store.exported import ExportedLater, NotExported, export_of_today
@@ -51,8 +51,6 @@ ROW_BYTES = 3 * 8
 POINTS_A_LINE = 5_000
 EARLIEST, LATEST = datetime(1970, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 """Between them a clock may be, one that was never set among them; beyond some years no export can be written."""
-LARGEST = 1e100
-"""Of any number: far more than a mission tells, and its square is finite, too."""
 MOST_COUNTED, HIGHEST_HZ = 2**31 - 1, 1e12
 MOST_TOLD, LONGEST_MODE, LONGEST_TAG = 1e6, 40, 200
 """Metres, degrees, percent or decibels that a point of a path or a sweep may tell, and characters of its words; NaN of
@@ -188,17 +186,9 @@ def _software(manifest: bytes | None) -> str:
 
 def _parsed(text: bytes, name: str) -> Any:
     try:
-        return json.loads(text, parse_float=_number, parse_int=_number)
+        return json.loads(text, parse_float=number_of, parse_int=number_of)
     except (ValueError, RecursionError) as error:
         raise _wrong("damaged", name) from error
-
-
-def _number(text: str) -> float | int:
-    """Raises ValueError for one that cannot be reckoned with."""
-    number = float(text)
-    if abs(number) > LARGEST:
-        raise ValueError(f"no mission tells a number of {len(text)} characters that is as large as this")
-    return int(text) if text.lstrip("-").isdigit() else number
 
 
 def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:

@@ -28,6 +28,9 @@ from backend.names import TURNS_WRITING
 from backend.reasons.request import BundleFactWrong, FactFault
 from backend.search.covering import is_region
 
+LARGEST = 1e100
+"""Of any number: far more than a mission tells, and its square is finite, too."""
+
 OfEmitter = BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected | HeardOnTheWay
 
 
@@ -109,6 +112,14 @@ def of_emitters_looked_for(recorded: Sequence[Recorded]) -> bool:
         elif isinstance(fact, OfEmitter) and fact.emitter_id not in emitters:
             return False
     return True
+
+
+def number_of(text: str) -> float | int:
+    """Raises ValueError for one that cannot be reckoned with."""
+    number = float(text)
+    if abs(number) > LARGEST:
+        raise ValueError(f"no mission tells a number of {len(text)} characters that is as large as this")
+    return int(text) if text.lstrip("-").isdigit() else number
 
 
 def is_id(text: Any) -> bool:

@@ -138,3 +138,15 @@ def test_bearings_that_come_through_a_pipe_are_read_once() -> None:
     answer = json.loads(CliRunner().invoke(APP, [f"/dev/fd/{pipe}", "--json"]).stdout)
     os.close(pipe)
     assert answer["bearings"] == 2
+
+
+@pytest.mark.parametrize(("sigma_deg", "said"), [(1e200, "no bearings that are read"), (-6.0, "event 3 is none")])
+def test_an_uncertainty_that_no_flight_tells_is_refused(tmp_path: Path, sigma_deg: float, said: str) -> None:
+    """It ended with a traceback, or localized within ten metres."""
+    path = Path(exported(tmp_path))
+    journal = json.loads(path.read_text())
+    journal["events"][2]["event"]["sigma_deg"] = sigma_deg
+    path.write_text(json.dumps(journal))
+    refused = CliRunner().invoke(APP, [str(path)])
+    assert refused.exit_code == 2
+    assert said in refused.stderr
