@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from hardware.direction_finding.table_file import RecordingError, Row, column_of, read_table
+from hardware.direction_finding.table_places import Places, place_columns
 from hardware.readings import HeadingSample, Place
 from hardware.reasons.iq_recording import HeadingsApart, HeadingsOfOtherLength, SigmfFieldMissing
 from hardware.reasons.table import FileUnusable
@@ -48,18 +49,19 @@ def headings_from(path: Path, recorded: SigmfRecording, remarks: list[RecordingR
     names = first.cells if named else ()
     time_at = column_of(names, "at_s", "time_s", "time", "t", "timestamp", "at_utc", "time_utc") if named else 0
     heading_at = column_of(names, "heading_deg", "heading", "yaw_deg", "yaw") if named else 1
-    lat_at, lon_at = column_of(names, "lat", "lat_deg", "latitude"), column_of(names, "lon", "lon_deg", "longitude")
     if time_at is None or heading_at is None:
         raise table.columns_unknown(first, "at_s", "heading_deg")
+    rows = table.rows[1:] if named else table.rows
+    places = place_columns(names, rows)
     headings: list[HeadingSample] = []
-    for row in table.rows[1:] if named else table.rows:
+    for row in rows:
         at_s, heading = _time_s(row, time_at), row.number(heading_at)
         if at_s is None or heading is None or not (math.isfinite(at_s) and math.isfinite(heading)):
             timeless = at_s is None or not math.isfinite(at_s)
             column, quantity = (time_at, "time") if timeless else (heading_at, "heading")
             remarks.append(table.cell_unusable(row, column, quantity))
         else:
-            headings.append(HeadingSample(at_s, heading % 360.0, _position(row, lat_at, lon_at)))
+            headings.append(HeadingSample(at_s, heading % 360.0, _position(row, places)))
     if len(headings) < 2:
         raise RecordingError(FileUnusable(str(path), "one_heading"))
     if max(h.at_s for h in headings) < EPOCH_S:
@@ -85,12 +87,9 @@ def _time_s(row: Row, column: int) -> float | None:
     return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
 
 
-def _position(row: Row, lat_at: int | None, lon_at: int | None) -> Place | None:
-    lat = None if lat_at is None else row.number(lat_at)
-    lon = None if lon_at is None else row.number(lon_at)
-    if lat is None or lon is None or not (abs(lat) <= 90.0 and abs(lon) <= 180.0):
-        return None
-    return Place(lat, lon)
+def _position(row: Row, places: Places | None) -> Place | None:
+    found = None if places is None else places.place(row)
+    return found if isinstance(found, Place) else None
 
 
 def _span_s(recorded: SigmfRecording, headings: Sequence[HeadingSample]) -> tuple[float, float]:

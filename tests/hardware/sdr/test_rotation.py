@@ -18,6 +18,7 @@ from hardware.reasons.iq_recording import HeadingsOfOtherLength, StrongestUsed
 from hardware.reasons.table import CellUnusable
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import SPECTRUM_SIZE, IqReading, mean_spectrum, read_rotation, read_sweeps
+from hardware.sdr.rotation_headings import headings_from
 from hardware.sdr.sigmf_file import Azimuth, load_sigmf, write_sigmf
 from hardware.sdr.spectrum import averaged_spectrum
 
@@ -215,3 +216,18 @@ def test_a_recording_read_in_pieces_is_the_whole_one(tmp_path: Path, monkeypatch
     assert np.array_equal(pieces.sweeps[0].sweep.power_db, whole.sweeps[0].sweep.power_db)
     window = np.hanning(SPECTRUM_SIZE)
     assert np.allclose(mean_spectrum(samples, window), averaged_spectrum(iq, window), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("columns", "cells"),
+    [("lat,ns,lon,ew", "36.5,S,174.25,W"), ("lat,ns,lon,ew", "3630.0,S,17415.0,W"), ("lat,lon", "36°30.0S,174°15.0W")],
+)
+def test_the_places_of_a_table_of_headings_are_read_as_those_of_other_tables(
+    tmp_path: Path, columns: str, cells: str
+) -> None:
+    """Half the world away: letters were not looked at, and degrees with minutes were taken for none or for degrees."""
+    recorded = load_sigmf(write_sigmf(tmp_path / "turn", turn_iq(80.0), RATE_HZ, CENTRE_HZ, START_S))
+    path = tmp_path / "nose.csv"
+    path.write_text(f"at_s,heading_deg,{columns}\n" + "\n".join(f"{t},{30 * t},{cells}" for t in range(13)))
+    places = {heading.position for heading in headings_from(path, recorded, [])}
+    assert places == {Place(-36.5, -174.25)}
