@@ -9,6 +9,7 @@ import numpy as np
 import pymap3d
 from numpy.typing import NDArray
 
+from hardware.frame import middle_of
 from hardware.readings import HeadingSample, Place, PowerSample, Sweep
 from hardware.reasons.receiver import NothingHeardInTurn
 from hardware.reasons.sweep import (
@@ -117,7 +118,7 @@ def _place_and_drift(track: list[HeadingSample], position: Place | None) -> tupl
             raise SweepError(NoPositionHeard())
         return position, 0.0
     lat, lon = np.array([p.lat for p in places]), np.array([p.lon for p in places])
-    mean = position or Place(float(lat.mean()), float(lon.mean()))
+    mean = position or middle_of(lat.tolist(), lon.tolist(), lambda degrees: float(np.mean(degrees)))
     east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, mean.lat, mean.lon, 0.0)
     return mean, max(float(np.hypot(east, north).max()), *(h.displaced_m for h in track))
 

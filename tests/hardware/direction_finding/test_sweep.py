@@ -118,6 +118,16 @@ def test_drift_while_turning_is_measured_from_the_mean_place() -> None:
     assert sweep.drift_m == pytest.approx(6.6, abs=0.2)
 
 
+def test_a_turn_that_drifts_across_the_antimeridian_was_taken_there() -> None:
+    """It was taken at the mean of 180 and -180 degrees, half the world away, and thrown away for how far it drifted."""
+    times = np.arange(0.0, 12.0, 0.1)
+    lons = np.where(times < 6.0, 180.0 - 4e-6, -180.0 + 4e-6).tolist()
+    track = [replace(h, position=Place(0.0, lon)) for h, lon in zip(headings(times, 30.0), lons, strict=True)]
+    sweep = assemble_sweep(powers(times), track, frequency_hz=868e6, altitude_amsl_m=0.0)
+    assert abs(sweep.position.lon) == pytest.approx(180.0, abs=1e-6)
+    assert sweep.drift_m < 1.0
+
+
 @pytest.mark.parametrize(
     ("heard", "track", "reason"),
     [
