@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from collections import deque
 from collections.abc import Sequence
@@ -65,7 +66,7 @@ class PoseTrack:
         part = (at_s - a.at_s) / (b.at_s - a.at_s)
         place = Place(
             a.pose.place.lat + part * (b.pose.place.lat - a.pose.place.lat),
-            a.pose.place.lon + part * (b.pose.place.lon - a.pose.place.lon),
+            a.pose.place.lon + part * math.remainder(b.pose.place.lon - a.pose.place.lon, 360.0),
         )
         height = a.pose.height_m + part * (b.pose.height_m - a.pose.height_m)
         return Pose(place, height, (a.pose.heading_deg + part * turn) % 360.0)

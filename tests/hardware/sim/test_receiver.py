@@ -297,3 +297,13 @@ async def test_a_narrow_receiver_refuses_what_its_band_does_not_hold_and_locks_l
     assert early
     assert min(early) > max(sample.power_db for sample in wide) or len(set(early)) == 1
     assert len(heard) > 90
+
+
+def test_a_flight_across_the_antimeridian_is_heard_there() -> None:
+    """Between a report east of it and one west of it the vehicle was half the world away."""
+    track = PoseTrack()
+    for at_s, lon in ((0.0, 179.9999), (1.0, -179.9999)):
+        track.hear(Telemetry(True, at_s, Place(0.0, lon), at_s, 100.0, 40.0, 10.0, at_s))
+    between = track.at(0.5)
+    assert between is not None
+    assert between.place.lon % 360.0 == pytest.approx(180.0)
