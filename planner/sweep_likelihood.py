@@ -3,11 +3,12 @@
 Where a bearing is a main peak and a sigma, a sweep says more: several peaks, a skew, directions of which it knows
 nothing. A scale s of the sensor's sigma, which a joint belief estimates, makes of the density p
 
-    p_s ~ p^(1 / s^2)                            for s <= 1
-    p_s = p * N(0, (s^2 - 1) sigma_p^2)          for s > 1, convolved; sigma_p the width of its highest peak
+    p_s(d) = p(d) - l(d) + l(c + (d - c) / s) / s     for s < 1, l = (p - min p) w the highest lobe, c its middle
+    p_s    = p * N(0, (s^2 - 1) sigma_p^2)            for s > 1, convolved; sigma_p the width of its highest peak
 
-Both make N(., (s sigma)^2) of a normal p and leave a flat one flat. A power below 1 would raise the flat foot that
-every sweep has, as if wider errors were more outliers: there is a rate of these besides.
+Both make N(., (s sigma)^2) of a normal p and leave a flat one flat. What lies beside the lobe keeps its share where
+errors are smaller than stated, since echoes become no rarer: a power of p took it away, so that among echoes no flight
+ever found its sweeps better than they say (decision 75).
 """
 
 from __future__ import annotations
@@ -20,6 +21,10 @@ from planner.types import FloatArray
 
 EXCLUDED = -12.65
 """Natural log below the likeliest: at that the direction finder cuts, so there is no telling how much lower it was."""
+LOBE = math.radians(45.0)
+"""To either side of the highest peak: so far its lobe is looked at for its middle and its standard deviation."""
+REACH = 3.5
+"""Of these deviations a lobe reaches to either side of its middle: w = exp(-(off / reach)^8)."""
 
 
 def density(log_likelihood: tuple[float, ...], least_sigma: float) -> FloatArray:
@@ -40,12 +45,9 @@ def width(density: FloatArray) -> float:
 
 def scaled(density: FloatArray, scale: FloatArray) -> FloatArray:
     """(k, m): p_s for each of the (k,) scales, normalized like `density` (m,)."""
-    relative, sigma = density / density.max(), width(density)
+    sigma = width(density)
     return np.array(
-        [
-            _normalized(relative ** (1.0 / s**2)) if s <= 1.0 else _blurred(density, sigma * math.sqrt(s**2 - 1.0))
-            for s in scale
-        ]
+        [_drawn_in(density, s) if s < 1.0 else _blurred(density, sigma * math.sqrt(s**2 - 1.0)) for s in scale]
     )
 
 
@@ -68,7 +70,34 @@ def _normalized(mass: FloatArray) -> FloatArray:
     return np.asarray(mass / mass.sum() * len(mass) / (2.0 * math.pi), dtype=np.float64)
 
 
+def _drawn_in(density: FloatArray, scale: float) -> FloatArray:
+    """`scaled` for a scale below 1."""
+    off, spread = _lobe(density)
+    lobe = (density - density.min()) * np.exp(-((off / (REACH * spread)) ** 8))
+    order = np.argsort(off)
+    drawn: FloatArray = np.interp(off / scale, off[order], lobe[order], left=0.0, right=0.0) / scale
+    return _normalized(density - lobe + drawn)
+
+
+def _lobe(density: FloatArray) -> tuple[FloatArray, float]:
+    """(m,) directions off the middle of the highest lobe, within half a circle, and its standard deviation: both in
+    steps between directions. Highest once blurred, since an echo's peak may be high and narrow."""
+    count = len(density)
+    top = int(np.argmax(_blurred(density, 2.0 * width(density))))
+    off = _off(count, float(top))
+    near = np.where(np.abs(off) <= LOBE * count / (2.0 * math.pi), density, 0.0)
+    mean = float(off @ near / near.sum())
+    spread = math.sqrt(float((off - mean) ** 2 @ near / near.sum()))
+    return _off(count, top + mean), spread
+
+
+def _off(count: int, middle: float) -> FloatArray:
+    return np.asarray((np.arange(count) - middle + 0.5 * count) % count - 0.5 * count, dtype=np.float64)
+
+
 def _blurred(mass: FloatArray, sigma: float) -> FloatArray:
+    if sigma == 0.0:
+        return mass
     # the wrapped normal's Fourier coefficients: exp(-(n sigma)^2 / 2)
     order = np.arange(mass.size // 2 + 1)
     found = np.fft.irfft(np.fft.rfft(mass) * np.exp(-0.5 * (order * sigma) ** 2), mass.size)

@@ -48,6 +48,24 @@ def test_two_peaks_keep_their_weights_and_a_flat_one_says_nothing_at_any_scale()
     assert flat == pytest.approx(np.full((3, 360), 1.0 / (2.0 * math.pi)))
 
 
+@pytest.mark.parametrize("apart_deg", [60.0, 120.0, 180.0])
+def test_an_echo_keeps_its_share_where_errors_are_smaller_than_stated(apart_deg: float) -> None:
+    both = np.logaddexp(normal(0.5, 6.0), np.array(normal(0.5 + math.radians(apart_deg), 6.0)) + math.log(0.25))
+    found, (drawn,) = (
+        density(tuple(both.tolist()), NO_LESS),
+        scaled(density(tuple(both.tolist()), NO_LESS), np.array([0.5])),
+    )
+    beside = np.abs(np.angle(np.exp(1j * (ANGLE - 0.5)))) > math.radians(apart_deg / 2.0)
+    assert float(drawn[beside].sum() / drawn.sum()) == pytest.approx(float(found[beside].sum() / found.sum()), rel=0.02)
+    assert width(drawn) == pytest.approx(0.5 * width(found), rel=0.05)
+
+
+def test_what_is_drawn_in_is_the_broad_lobe_and_not_an_echo_s_narrow_peak_on_its_flank() -> None:
+    both = np.logaddexp(normal(0.0, 8.0), np.array(normal(0.4, 1.0)) + math.log(0.3))
+    (drawn,) = scaled(density(tuple(both.tolist()), NO_LESS), np.array([0.5]))
+    assert abs(np.angle(np.exp(1j * ANGLE[int(np.argmax(drawn))]))) < math.radians(5.0)
+
+
 @given(st.lists(st.floats(EXCLUDED - 0.05, 0.0), min_size=8, max_size=360), st.floats(0.5, 2.0))
 def test_the_density_is_one(values: list[float], scale: float) -> None:
     for found in scaled(density(tuple(values), NO_LESS), np.array([1.0, scale])):
