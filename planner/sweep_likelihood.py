@@ -75,7 +75,7 @@ def _drawn_in(density: FloatArray, scale: float) -> FloatArray:
     off, spread = _lobe(density)
     lobe = (density - density.min()) * np.exp(-((off / (REACH * spread)) ** 8))
     order = np.argsort(off)
-    drawn: FloatArray = np.interp(off / scale, off[order], lobe[order], left=0.0, right=0.0) / scale
+    drawn = np.asarray(np.interp(off / scale, off[order], lobe[order], left=0.0, right=0.0), dtype=np.float64) / scale
     return _normalized(density - lobe + drawn)
 
 
