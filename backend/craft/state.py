@@ -273,14 +273,15 @@ def _counted_anew(state: CraftState, event: BearingExcluded | BearingIncluded) -
 def retakes(most: int, has_bearing: bool, event: SweepRejected) -> int:
     """How often a turn that was rejected so is made again at its place, at most `most` times.
 
-    Not at all where a whole turn heard nothing and says what it listened to: that counts (decision 76), and the next
-    place tells more than silence there again. Before the first bearing a place may happen to lie right above the
-    emitter. Most sweeps from there do not look like the antenna, and a repeated one that does points away from the
+    Not at all where a whole turn heard nothing and says that it listened to all sides: that counts (decision 76), and
+    the next place tells more than silence there again. Before the first bearing a place may happen to lie right above
+    the emitter. Most sweeps from there do not look like the antenna, and a repeated one that does points away from the
     emitter: the place is left at once (decision 70).
     """
     whole = event.turn is None or not event.turn.partial
+    silent = whole and event.silence is not None and min(event.silence.chances) > 0.0
     unlike = isinstance(event.reason, UnlikeAntenna) and not has_bearing
-    return 0 if unlike or (whole and event.silence is not None) else most
+    return 0 if unlike or silent else most
 
 
 def _ours(state: CraftState, event: SweepRejected | BearingMeasured) -> bool:

@@ -20,6 +20,7 @@ from walks import Walk, commanded, of_craft, refusal, sent
 
 from backend import commands
 from backend.craft import effects, inputs
+from backend.events import SilenceFact
 from backend.mission.machine import transition
 from backend.mission.state import MissionState, fold
 from backend.reasons import refusals
@@ -105,6 +106,15 @@ def test_a_belief_does_not_disturb_the_turn_that_is_taken_again() -> None:
     assert UpdateBelief(FIRST_EMITTER) in asked
     assert walk.craft.phase == "measuring"
     assert sent(walk.believe()) == []
+
+
+def test_a_whole_turn_whose_receiver_lived_for_a_part_of_it_is_taken_again() -> None:
+    """Of a tag: it was taken for silence all round, and the place was left with most of the circle unheard."""
+    walk = Walk().to("measuring")
+    told = SilenceFact(chances=[1.0] * 3 + [0.0] * 13, gain_db=[0.0] * 36)
+    walk.to_craft(inputs.SweepTaken((silent().model_copy(update={"silence": told}),)))
+    assert walk.craft.phase == "measuring"
+    assert fold(walk.recorded) == walk.state
 
 
 def test_before_there_is_a_bearing_a_place_that_may_lie_above_the_emitter_is_left_at_once() -> None:
