@@ -23,6 +23,8 @@ EXCLUDED = -12.65
 """Natural log below the likeliest: at that the direction finder cuts, so there is no telling how much lower it was."""
 LOBE = math.radians(45.0)
 """To either side of the highest peak: so far its lobe is looked at for its middle and its standard deviation."""
+MOST_BLURRED = LOBE / 3.0
+"""When the highest lobe is looked for: two of one height that are farther apart than LOBE stay two."""
 REACH = 3.5
 """Of these deviations a lobe reaches to either side of its middle: w = exp(-(off / reach)^8)."""
 
@@ -75,20 +77,23 @@ def _drawn_in(density: FloatArray, scale: float) -> FloatArray:
     off, spread = _lobe(density)
     lobe = (density - density.min()) * np.exp(-((off / (REACH * spread)) ** 8))
     order = np.argsort(off)
-    drawn = np.asarray(np.interp(off / scale, off[order], lobe[order], left=0.0, right=0.0), dtype=np.float64) / scale
+    # what lies below the edge of each direction: so none of a lobe that is drawn in between two of them is lost
+    edge = np.append(off[order][0], off[order] + 1.0) - 0.5
+    below = np.append(0.0, np.cumsum(lobe[order]))
+    drawn = np.interp((off + 0.5) / scale, edge, below) - np.interp((off - 0.5) / scale, edge, below)
     return _normalized(density - lobe + drawn)
 
 
 def _lobe(density: FloatArray) -> tuple[FloatArray, float]:
-    """(m,) directions off the middle of the highest lobe, within half a circle, and its standard deviation: both in
-    steps between directions. Highest once blurred, since an echo's peak may be high and narrow."""
+    """(m,) directions off the middle of the highest lobe, within half a circle, and its standard deviation, one at
+    least: both in steps between directions. Highest once blurred, since an echo's peak may be high and narrow."""
     count = len(density)
-    top = int(np.argmax(_blurred(density, 2.0 * width(density))))
+    top = int(np.argmax(_blurred(density, min(2.0 * width(density), MOST_BLURRED))))
     off = _off(count, float(top))
     near = np.where(np.abs(off) <= LOBE * count / (2.0 * math.pi), density, 0.0)
     mean = float(off @ near / near.sum())
     spread = math.sqrt(float((off - mean) ** 2 @ near / near.sum()))
-    return _off(count, top + mean), spread
+    return _off(count, top + mean), max(spread, 1.0)
 
 
 def _off(count: int, middle: float) -> FloatArray:

@@ -66,6 +66,33 @@ def test_what_is_drawn_in_is_the_broad_lobe_and_not_an_echo_s_narrow_peak_on_its
     assert abs(np.angle(np.exp(1j * ANGLE[int(np.argmax(drawn))]))) < math.radians(5.0)
 
 
+@pytest.mark.parametrize("scale", [0.2, 0.5])
+def test_a_lobe_that_is_drawn_in_between_two_directions_keeps_its_share(scale: float) -> None:
+    """It was looked up at the directions only: of this one a sixth was left at a scale of 0.2."""
+    both = np.logaddexp(normal(math.radians(0.5), 1.0), np.array(normal(2.0, 6.0)) + math.log(0.05))
+    found = density(tuple(both.tolist()), NO_LESS)
+    (drawn,) = scaled(found, np.array([scale]))
+    beside = np.abs(np.angle(np.exp(1j * (ANGLE - 2.0)))) < math.radians(30.0)
+    assert float(drawn[beside].sum() / drawn.sum()) == pytest.approx(float(found[beside].sum() / found.sum()), rel=0.01)
+
+
+@pytest.mark.parametrize("count", [8, 72, 140])
+def test_one_direction_alone_stays_what_it_is(count: int) -> None:
+    """Its lobe had no standard deviation: all that was said of any direction was not a number."""
+    found = density((0.0, *[EXCLUDED - 1.0] * (count - 1)), NO_LESS)
+    (drawn,) = scaled(found, np.array([0.5]))
+    assert drawn == pytest.approx(found)
+
+
+@pytest.mark.parametrize("apart_deg", [60.0, 70.0, 80.0])
+def test_two_lobes_that_are_as_high_are_not_drawn_to_where_neither_is(apart_deg: float) -> None:
+    """Blurred as if either were the one there is, they were one, whose middle lay in the valley between them."""
+    both = np.logaddexp(normal(1.0, 10.0), normal(1.0 + math.radians(apart_deg), 10.0))
+    (drawn,) = scaled(density(tuple(both.tolist()), NO_LESS), np.array([0.5]))
+    off = np.angle(np.exp(1j * (ANGLE[int(np.argmax(drawn))] - np.array([1.0, 1.0 + math.radians(apart_deg)]))))
+    assert np.abs(off).min() < math.radians(2.0)
+
+
 @given(st.lists(st.floats(EXCLUDED - 0.05, 0.0), min_size=8, max_size=360), st.floats(0.5, 2.0))
 def test_the_density_is_one(values: list[float], scale: float) -> None:
     for found in scaled(density(tuple(values), NO_LESS), np.array([1.0, scale])):
