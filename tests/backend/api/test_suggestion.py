@@ -68,8 +68,9 @@ def test_several_emitters_are_planned_for_with_it():
 def test_what_a_request_says_of_errors_stands_and_what_it_does_not_is_estimated_by_all_emitters():
     assert suggested_mission(HOME).sensor.shared_errors
     spec = suggested_mission(HOME)
-    for said in ({}, {"bearing_errors": "independent"}, {"shared_errors": False}):
+    for said in ({}, {"bearing_errors": "independent"}, {"shared_errors": False}, {"sweep_evidence": "peak"}):
         asked = spec.model_copy(update={"sensor": SensorSpec.model_validate(said)})
         found = with_errors_estimated(asked).sensor
         assert found.bearing_errors == said.get("bearing_errors", "joint")
         assert found.shared_errors == said.get("shared_errors", True)
+        assert found.sweep_evidence == said.get("sweep_evidence", "whole")
