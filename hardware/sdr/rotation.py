@@ -147,6 +147,9 @@ def mean_spectrum(samples: Samples, window: NDArray[np.float64]) -> NDArray[np.f
 
 
 def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> list[PowerSample]:
+    reading_s = 1.0 / ToneSetting().rate_hz if pulses is None else pulses.width_s
+    if recorded.samples.size < int(reading_s * recorded.sample_rate_hz):  # its window alone may fill the memory
+        raise RecordingError(SamplesUnusable(str(recorded.path), "too_short"))
     meter = _meter(recorded, frequency_hz, pulses)
     size = max(int(BLOCK_S * recorded.sample_rate_hz), 1)
     heard = [sample for block in recorded.blocks(size) for sample in meter.feed(block) if sample.detected]

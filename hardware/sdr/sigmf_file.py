@@ -32,6 +32,7 @@ from hardware.sdr.sigmf_names import DATA, META
 
 NUM_CHANNELS_KEY: Final = "core:num_channels"
 AZIMUTH_KEY: Final = "antenna:azimuth_angle"
+HEADER_BYTES_KEY: Final = "core:header_bytes"
 """Of the antenna extension to SigMF: direction of the main beam from north, degrees clockwise."""
 
 
@@ -61,7 +62,7 @@ class Samples:
 
     def __init__(self, recording: sigmf.SigMFFile) -> None:
         self._recording = recording
-        self.size: int = recording.sample_count
+        self.size = int(recording.sample_count)  # of bytes that are stated as 8.0 it is a float
 
     def part(self, first: int, end: int) -> NDArray[np.complex64]:
         """(end - first,), 1.0 = full scale; fewer at the end of the recording."""
@@ -127,6 +128,8 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     path = Path(path)
     recording = _opened(path)
     captures = sorted(recording.get_captures(), key=lambda capture: _whole(path, capture, sigmf.SAMPLE_START_KEY))
+    for capture in captures:
+        _whole(path, capture, HEADER_BYTES_KEY)
     rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
     if rate is None:
         raise RecordingError(SigmfFieldMissing(str(path), "core:sample_rate"))
@@ -204,7 +207,7 @@ def _refuse_unread(meta: Path) -> None:
 
 
 def _whole(path: Path, stated: dict[str, Any], key: str) -> int:
-    """How many samples, 0 where it is not stated."""
+    """How many samples or bytes, 0 where it is not stated."""
     count = stated.get(key) or 0
     if not _is_number(count) or count < 0 or count % 1 != 0:
         raise RecordingError(FileUnreadable(str(path), f"{key}: {count!r}"[:LONGEST_CELL]))

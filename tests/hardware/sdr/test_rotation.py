@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sigmf
+from refusals import refusing
 
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.readings import Place
-from hardware.reasons.iq_recording import HeadingsOfOtherLength, StrongestUsed
+from hardware.reasons.iq_recording import HeadingsOfOtherLength, SamplesUnusable, StrongestUsed
 from hardware.reasons.table import CellUnusable
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import SPECTRUM_SIZE, IqReading, mean_spectrum, read_rotation, read_sweeps
@@ -231,3 +232,13 @@ def test_the_places_of_a_table_of_headings_are_read_as_those_of_other_tables(
     path.write_text(f"at_s,heading_deg,{columns}\n" + "\n".join(f"{t},{30 * t},{cells}" for t in range(13)))
     places = {heading.position for heading in headings_from(path, recorded, [])}
     assert places == {Place(-36.5, -174.25)}
+
+
+@pytest.mark.parametrize("pulses", [None, PulseSetting()], ids=["carrier", "tag"])
+def test_a_recording_that_is_too_short_for_one_reading_at_its_rate_is_refused(
+    tmp_path: Path, pulses: PulseSetting | None
+) -> None:
+    """A window as long as a reading was made first, for which there was no memory."""
+    path = write_sigmf(tmp_path / "turn", turn_iq(80.0), 1e12, CENTRE_HZ, START_S, azimuths_of_turn())
+    with refusing(SamplesUnusable(str(path), "too_short"), RecordingError):
+        read_rotation(path, iq=IqReading(frequency_hz=CENTRE_HZ, pulses=pulses))

@@ -172,16 +172,19 @@ def test_a_frequency_that_is_no_number_is_named(tmp_path: Path, frequency: Any) 
         load_sigmf(path)
 
 
+@pytest.mark.filterwarnings("ignore:Data source does not contain an integer number")
 @pytest.mark.parametrize(
     "stated",
     [
         {"captures": [capture(10**400)]},
+        {"captures": [capture(0) | {"core:header_bytes": 1.5}]},
+        {"captures": [capture(0) | {"core:header_bytes": -8}]},
         {"captures": [capture(0) | {AZIMUTH_KEY: 10**400}]},
         {"captures": [capture(0) | {"core:geolocation": {"type": "Point", "coordinates": [10**400, 1]}}]},
         {"sample_rate": 10**400},
     ],
 )
-def test_whole_numbers_that_no_float_holds_are_refused(tmp_path: Path, stated: dict[str, Any]) -> None:
+def test_numbers_that_count_nothing_or_that_no_float_holds_are_refused(tmp_path: Path, stated: dict[str, Any]) -> None:
     path = changed(write_sigmf(tmp_path / "two", ramp(2000), RATE_HZ, CENTRE_HZ, BEGAN_S), **stated)
     with pytest.raises(RecordingError):
         load_sigmf(path)
