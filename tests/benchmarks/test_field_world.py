@@ -34,8 +34,17 @@ def test_rows_are_compared_mission_by_mission() -> None:
     assert dict(zip((c.name for c in field_world.COLUMNS), field_world.row(SETTING, "sector", found), strict=True))[
         "localized in 400 s, %"
     ] == pytest.approx(100.0)
-    judged = [figure for figure in field_world.figures({SETTING: found}) if figure.wanted is not None]
+    judged = [figure for figure in field_world.figures({SETTING: found}, {}) if figure.wanted is not None]
     assert [(figure.value, figure.met) for figure in judged] == [(40.0, True)], "ahead of the widened wedge"
+
+
+def test_claims_of_new_missions_are_counted_on_all_their_seeds() -> None:
+    beyond = replace(FLOWN, seed=3, error_m=100.0, stated_m=10.0, in_c95=False)
+    more = row(200.0, 250.0, 450.0) | {3: beyond}
+    found = field_world.figures({SETTING: {"swings": row(200.0, 250.0)}}, {SETTING: {"swings": more}})
+    told = {figure.name.split(": ")[1]: figure.value for figure in found if figure.name.startswith("field world")}
+    assert told == {"localized in 400 s": 75.0, "truth in C95 at the claim": 75.0, "error beyond 3 x stated": 25.0}
+    assert "2 missions" in next(figure.note for figure in found if figure.name.startswith("time until the claim"))
 
 
 def test_what_was_kept_is_not_flown_again(tmp_path: Path) -> None:
