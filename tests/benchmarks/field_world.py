@@ -239,9 +239,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--missions", type=int, default=100, help="at least 2")
     parser.add_argument("--seed", type=int, default=1, help="of the first mission")
-    parser.add_argument(
-        "--claims", type=int, default=0, help="of new missions, for what they claim; if more"
-    )
+    parser.add_argument("--claims", type=int, default=0, help="of new missions, for what they claim; if more")
     parser.add_argument("--rows", default=",".join(ROWS))
     parser.add_argument(
         "--compass", default="sd", help="how far it is off, degrees, or sd: 4 degrees in the mean square"
