@@ -35,6 +35,13 @@ from planner.types import Decision, FloatArray, PlannerError, Problem, Ring
 
 COST_ROLLOUTS = 200
 
+SPECIFIED_COUNTS = 4
+"""Bearings that the specified sigma counts as. From place to place sigmas differ by a factor of 1.8 (ln: 0.6), and one
+says nothing of the next (167 of the field world: r = -0.1 and 0.1); what a craft's sigmas have in common differs from
+the specification by 1.35 (ln: 0.3): 0.6^2 / 0.3^2."""
+SWUNG_LOOKS = 2
+"""What a place tells where the nose swings on the way to it, in turns: the leg says as much as one (decision 61)."""
+
 MEASURING_S, WORN_FROM_M = 30.0, 60.0
 """Of a moving emitter's search: how long a turn usually takes, and how far off bearings are taken."""
 
@@ -158,14 +165,17 @@ def turned_at(task: Localization, measured: Sequence[BearingMeasured]) -> tuple[
 
 def foreseen_for(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
     """As `foreseen_to_plan`. What turns took that were made for more emitters says nothing of those to come."""
-    found = foreseen_to_plan(task.problem, measured, belief)
+    looks = SWUNG_LOOKS if task.mission.sensor.swing_on_the_way else 1
+    found = foreseen_to_plan(task.problem, measured, belief, looks)
     return replace(found, measurement_time=task.problem.measurement_time) if task.fewer_turned_for else found
 
 
-def foreseen_to_plan(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
+def foreseen_to_plan(
+    problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief, looks: int = 1
+) -> Problem:
     """What is foreseen of the bearings to come, those of legs where the craft turns at no place. It turns at the first
-    one: until then all are foreseen as turns, so that a preview says rather too much."""
-    found = foreseen(problem, measured, belief)
+    one: until then all are foreseen as turns, so that a preview says rather too much. looks: as `foreseen`."""
+    found = foreseen(problem, measured, belief, looks)
     if found.legs is None or not any(isinstance(fact.source, CraftSource) for fact in measured):
         return replace(found, legs=None)
     errors = belief.errors_of(source_name(measured[-1].source)) if isinstance(belief, JointBelief) else None
@@ -175,25 +185,29 @@ def foreseen_to_plan(problem: Problem, measured: Sequence[BearingMeasured], beli
     return flown_by_legs(found)
 
 
-def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief | None = None) -> Problem:
-    """The problem with the sensor as this mission found it, for the bearings to come; the specification counts as one.
+def foreseen(
+    problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief | None = None, looks: int = 1
+) -> Problem:
+    """The problem with the sensor as this mission found it, for the bearings to come.
 
-    sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): a geometric mean, since sigma is a scale: one bad sweep in a
-    good signal does not undo the others. The measurement time is the arithmetic mean, since missions add it up.
+    sigma = (sigma_specified^k prod_i sigma_i)^(1/(n+k)), k = SPECIFIED_COUNTS: a geometric mean, since sigma is a
+    scale: one bad sweep in a good signal does not undo the others. The measurement time is the arithmetic mean, since
+    missions add it up; there the specification counts as one.
     A joint belief knows more: of sigma only each bearing's own share counts, times the scale that was found, and the
     bias by as much as it is still uncertain. Before the first bearing it is what earlier flights make of the specified
-    sigma.
+    sigma. looks: how many turns a place is worth after the first one; they share the bias.
     """
-    sigmas = [problem.sigma, *(math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0)]
-    sigma = _with_errors(geometric_mean(sigmas), measured, belief)
+    sigmas = [math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0]
+    sigma = _with_errors(geometric_mean([problem.sigma] * SPECIFIED_COUNTS + sigmas), measured, belief, looks)
     times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
     flown = (fact.source for fact in reversed(measured) if isinstance(fact.source, CraftSource))
     next_source = source_name(next(flown, CraftSource(craft_id=FIRST_CRAFT)))
     return replace(problem, sigma=sigma, measurement_time=fmean(times), next_source=next_source)
 
 
-def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None) -> float:
-    """sigma_foreseen = hypot(scale sigma_own, bias' standard deviation), of the source that measured last; rad."""
+def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None, looks: int) -> float:
+    """sigma_foreseen = hypot(scale sigma_own / sqrt(looks), bias' standard deviation), of the source that measured
+    last; rad."""
     if isinstance(belief, MovingBelief):
         return _worn(sigma, measured, belief)
     if not isinstance(belief, JointBelief):
@@ -204,7 +218,7 @@ def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: Grid
     if errors is None:
         return sigma
     shares = [max(own_sigma_deg(fact), math.degrees(SMALLEST_SIGMA)) / max(fact.sigma_deg, 1e-3) for fact in measured]
-    return math.hypot(errors.scale * sigma * geometric_mean(shares), errors.bias_sd)
+    return math.hypot(errors.scale * sigma * geometric_mean(shares) / math.sqrt(looks), errors.bias_sd)
 
 
 def _worn(sigma: float, measured: Sequence[BearingMeasured], belief: MovingBelief) -> float:

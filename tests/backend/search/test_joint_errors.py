@@ -16,7 +16,7 @@ from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
 from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planner_bearings import source_name
-from backend.search.planning import foreseen
+from backend.search.planning import foreseen, foreseen_for
 from backend.search.source_priors import priors_of, unknown_errors
 from backend.search.state import SearchState
 from backend.spec import MissionSpec, Polygon, SensorSpec
@@ -178,6 +178,21 @@ def test_the_sigma_to_come_is_their_own_and_what_is_open_of_the_bias() -> None:
     assert foreseen(JOINT.problem, seen, belief).sigma < 0.8 * plain.sigma
     assert foreseen(JOINT.problem, seen[:1], few).sigma > foreseen(JOINT.problem, seen, belief).sigma
     assert foreseen(JOINT.problem, (), JOINT.prior).sigma == pytest.approx(JOINT.problem.sigma)
+
+
+def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass() -> None:
+    swinging = task(bearing_errors="joint", listen_on_the_way=True, swing_on_the_way=True)
+    seen = turned(5.0)
+    first = foreseen_for(swinging, (), JOINT.prior).sigma
+    assert first == foreseen_for(JOINT, (), JOINT.prior).sigma
+    for measured in (seen[:1], seen):
+        belief = JOINT.planning_belief(JOINT.planner_bearings(measured))
+        turn, place = (foreseen_for(one, measured, belief).sigma for one in (JOINT, swinging))
+        assert turn / math.sqrt(2.0) < place < turn
+        assert foreseen(swinging.problem, measured, belief).sigma == turn
+    (errors,) = belief.errors
+    own = [math.sqrt(sigma**2 - errors.bias_sd**2) for sigma in (turn, place)]
+    assert own[1] == pytest.approx(own[0] / math.sqrt(2.0))
 
 
 def test_a_specification_of_before_has_the_priors_of_before() -> None:

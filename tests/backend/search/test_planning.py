@@ -13,6 +13,7 @@ from backend.events import PersonSource
 from backend.search.localization import Localization, localization
 from backend.search.planner_bearings import source_name
 from backend.search.planning import (
+    SPECIFIED_COUNTS,
     cost_of,
     foreseen,
     foreseen_for,
@@ -138,11 +139,11 @@ def test_before_the_first_bearing_the_sensor_is_as_specified() -> None:
     assert foreseen(problem, ()).sigma == pytest.approx(problem.sigma, rel=1e-12)
 
 
-def test_bearings_to_come_are_expected_as_good_as_those_that_came() -> None:
+def test_bearings_to_come_are_expected_as_good_as_specified_and_as_those_that_came() -> None:
     problem = task().problem
     seen = [towards(0.0, -20.0, (200.0, 80.0), sigma=sigma) for sigma in (1.0, 1.0, 4.0)]
 
-    expected = (math.degrees(problem.sigma) * 1.0 * 1.0 * 4.0) ** 0.25
+    expected = (math.degrees(problem.sigma) ** SPECIFIED_COUNTS * 1.0 * 1.0 * 4.0) ** (1.0 / (SPECIFIED_COUNTS + 3))
 
     assert math.degrees(foreseen(problem, seen).sigma) == pytest.approx(expected)
 

@@ -15,7 +15,7 @@ from planner.observation import wrap
 from planner.options import FIELD
 from planner.plan import expected_time_from, plan
 from planner.policy.actions import constrained_actions
-from planner.policy.claim_ahead import biased_cells, choice, claim_ahead, drawn
+from planner.policy.claim_ahead import LATER_CHANCE, ClaimAhead, biased_cells, choice, claim_ahead, drawn
 from planner.reasons import BetweenPlaces, ErrorMayBeFarLarger, NearerThanStandoff, QuickestPlace
 from planner.study.scenarios import scenario
 from planner.types import Bearing, LinearConstantMotion, LocalizationRule, Problem
@@ -105,9 +105,20 @@ def test_the_choice_is_the_least_value_and_its_times_have_that_mean():
     best = int(np.argmin(ahead.values))
     assert (decision.x, decision.y) == tuple(ahead.places[best])
     chance = ahead.chance[best]
-    whole = ahead.costs[best] + ahead.again * (1.0 - chance) / chance
+    whole = ahead.costs[best] + ahead.again * (1.0 - chance) / LATER_CHANCE
     assert decision.times.mean() == pytest.approx(whole, rel=0.03)
     assert {(c.x, c.y) for c in decision.candidates} <= {(x, y) for x, y in places.tolist()}
+
+
+@pytest.mark.parametrize("chance", [0.0, 0.3, 0.7, 1.0])
+def test_a_bearing_that_fails_costs_a_few_more_whatever_its_chance_was(chance):
+    """1 / P as many, as once reckoned, foretold 127 s where 64 followed."""
+    ahead = ClaimAhead(np.zeros((2, 2)), np.array([30.0, 50.0]), np.array([chance, 0.0]), lambda some: some[:, 0])
+    times = ahead.times(30.0, chance, 4096)
+    assert times.mean() == pytest.approx(30.0 + (1.0 - chance) * 40.0 / LATER_CHANCE, rel=1e-3)
+    assert np.mean(times == 30.0) == pytest.approx(chance, abs=1e-3)
+    better = ahead.times(30.0, min(chance + 0.1, 1.0), 4096)
+    assert (better <= times).all()
 
 
 def test_an_operators_place_is_judged_as_the_planners_places_are():
