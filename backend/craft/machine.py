@@ -51,7 +51,7 @@ from backend.craft.inputs import (
     WorkVetoed,
 )
 from backend.craft.low_battery import LANDING_PATIENCE_S
-from backend.craft.state import AUTOMATIC, HOMEWARD, ORDERED_BEFORE, CraftState
+from backend.craft.state import AUTOMATIC, HOMEWARD, ORDERED_BEFORE, CraftState, most_repeated_first
 from backend.craft.step import (
     CraftStep,
     alert,
@@ -234,9 +234,9 @@ def _finished(step: CraftStep, given: InTheAir | Planned | NothingToPlan | Arriv
 
 
 def _swept(step: CraftStep, results: tuple[BearingMeasured | SweepRejected, ...]) -> None:
-    """A place is done when an emitter was heard there, or when it was tried often enough."""
+    """A place is done when an emitter was heard there, or when it was tried often enough for all that are sought."""
     bearings = [result for result in results if isinstance(result, BearingMeasured)]
-    rejected = [result for result in results if isinstance(result, SweepRejected)]
+    rejected = most_repeated_first(step.craft, step.search, results)
     for result in (*bearings, *rejected):
         step.record(result)
     for bearing in bearings[:1]:

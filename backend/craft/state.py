@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from backend.craft.ladder import Ladder
@@ -48,7 +49,7 @@ from backend.events import (
 )
 from backend.reasons import Reason
 from backend.reasons.flight import FailsafeFlies, Ordered
-from backend.search.state import OpenAlert
+from backend.search.state import OpenAlert, SearchState
 from backend.spec import Place
 from hardware.authority import NOBODY, Authority
 from hardware.reasons.sweep import UnlikeAntenna
@@ -238,7 +239,9 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
         case SweepRejected(attempt=attempt, place=place) if _ours(state, event):
             if state.chosen is None:  # the same turn heard another emitter: this one is not to be sought here again
                 return replace(state, avoid=(*state.avoid, place))
-            in_vain = state.in_vain | {attempt}  # one turn is rejected for each emitter that it did not hear
+            if attempt in state.in_vain:  # of each turn the first counts (see `most_repeated_first`)
+                return state
+            in_vain = state.in_vain | {attempt}
             if len(in_vain) <= retakes(state.maximum_retakes, state.has_bearing, event):
                 return replace(state, in_vain=in_vain)
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
@@ -282,6 +285,17 @@ def retakes(most: int, has_bearing: bool, event: SweepRejected) -> int:
     silent = whole and event.silence is not None and min(event.silence.chances) > 0.0
     unlike = isinstance(event.reason, UnlikeAntenna) and not has_bearing
     return 0 if unlike or silent else most
+
+
+def most_repeated_first(
+    state: CraftState, search: SearchState, results: Sequence[BearingMeasured | SweepRejected]
+) -> list[SweepRejected]:
+    """What was rejected of one turn, one sweep an emitter: the first says whether it is repeated. An emitter that is
+    not sought asks for nothing, and one that was silent takes no turn from one whose sweep was bad."""
+    sought = {emitter.emitter_id for emitter in search.sought}
+    rejected = (result for result in results if isinstance(result, SweepRejected))
+    most, has_bearing = state.maximum_retakes, state.has_bearing
+    return sorted(rejected, key=lambda one: (one.emitter_id not in sought, -retakes(most, has_bearing, one)))
 
 
 def _ours(state: CraftState, event: SweepRejected | BearingMeasured) -> bool:

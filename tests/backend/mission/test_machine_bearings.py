@@ -162,6 +162,33 @@ def test_a_turn_that_heard_no_emitter_of_two_is_one_turn_in_vain() -> None:
     assert walk.craft.phase == "planning"
 
 
+@pytest.mark.parametrize(("bad", "unheard"), [(FIRST_EMITTER, SECOND), (SECOND, FIRST_EMITTER)])
+def test_a_silent_emitter_takes_no_turn_from_another_whose_sweep_was_bad(bad: str, unheard: str) -> None:
+    walk = Walk(TWO_SPEC).to("flying").arrive()
+    for attempt in range(1, SPEC.sensor.maximum_retakes + 1):
+        turn = (rejected(attempt, emitter_id=bad), silent(attempt, emitter_id=unheard))
+        walk.to_craft(inputs.SweepTaken(tuple(sorted(turn, key=lambda result: result.emitter_id))))
+        assert walk.craft.phase == "measuring", bad
+        assert walk.craft.avoid == ()
+    last = SPEC.sensor.maximum_retakes + 1
+    walk.to_craft(inputs.SweepTaken((rejected(last, emitter_id=bad), silent(last, emitter_id=unheard))))
+    assert walk.craft.phase == "planning"
+    assert fold(walk.recorded) == walk.state
+
+
+def test_a_bad_sweep_of_an_emitter_that_is_found_keeps_no_craft_where_the_sought_one_is_silent() -> None:
+    walk = Walk(TWO_SPEC).to("flying").arrive()
+    walk.to_craft(inputs.SweepTaken((bearing(1, bearing_id="a1"), bearing(1, SECOND, bearing_id="b1"))))
+    walk.believe(True, FIRST_EMITTER)
+    walk.believe(False, SECOND)
+    walk.to_craft(inputs.Planned(plan(2)))
+    walk.arrive()
+    walk.to_craft(inputs.SweepTaken((rejected(1, 2), silent(1, 2, SECOND))))
+    assert walk.craft.phase == "planning"
+    assert len(walk.craft.avoid) > 0
+    assert fold(walk.recorded) == walk.state
+
+
 def test_a_muted_person_sends_a_craft_on_its_way_home_back_to_no_search_and_the_end_says_so() -> None:
     walk = Walk().to("flying")
     walk.give(BearingsArrived((bearing(1, source=PERSON, bearing_id="p"),)))
