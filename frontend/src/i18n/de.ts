@@ -337,7 +337,7 @@ export const de: Record<MessageKey, string> = {
   "sweep.unmute": "{source} wieder zählen",
   "source.craft": "Fluggerät {name}",
   "source.import": "Aufzeichnung",
-  "sweep.plot": "Empfangsleistung über der Richtung: Peilung {bearing}, Güte {quality}",
+  "sweep.plot": "Empfangsleistung über der Richtung: Peilung {bearing}",
   "payload.title": "Nutzlast {name}",
   "payload.none": "Noch keine Nutzlast hat sich verbunden.",
   "payload.link": "Verbindung",

@@ -221,7 +221,7 @@ export const en = {
   "sweep.unmute": "Unmute {source}",
   "source.craft": "craft {name}",
   "source.import": "recording",
-  "sweep.plot": "Received power against heading: bearing {bearing}, quality {quality}",
+  "sweep.plot": "Received power against heading: bearing {bearing}",
   "event.antenna_ok": "Antenna checked: {detail}",
   "event.antenna_wrong": "Antenna not right: {detail}",
   "event.bearings_imported": "{name} imported by {by}",
@@ -471,11 +471,10 @@ export const en = {
   "tour.end": "End the tour",
   "tour.step": "{step} of {count}",
   "tour.1":
-    "Abort, hold and return are one tap away on every page; on a phone they are at the foot of the screen. The words here say what the vehicle does, who has control and what it waits for.",
+    "Abort, hold and return are one tap away on every page, on a phone at its foot. The bar says what the vehicle does, who has control and what it waits for.",
   "tour.2":
     "The map shows where the emitter may be: brighter is likelier, nothing is impossible. The outline holds 95 %. Lines are bearings, with their error as a wedge.",
-  "tour.3":
-    "The estimate, how wrong it is expected to be, and how long until it is localized. It says “not yet”, with the reason, until two places agree.",
+  "tour.3": "The estimate, its expected error and how long it still takes. It says “not yet”, with the reason, until two places agree.",
   "tour.4": "The newest sweep: received power against heading and the fit of the antenna's pattern. Bad sweeps are taken again.",
   "tour.5": "The next place and why. Drag it or click the map to try another: you see what it costs before you slide.",
   "tour.6": "Everything that happened. Drag the handle to look back; “Live” brings you to now.",

@@ -4,7 +4,7 @@ import { act } from "preact/test-utils";
 import { afterEach, expect, it, vi } from "vitest";
 import * as api from "../sources/api";
 import * as coursesApi from "../sources/coursesApi";
-import { flown } from "../wire/examples";
+import { flown, record, someBearing, someSpec } from "../wire/examples";
 import { ComparePage } from "./ComparePage";
 import { ReportPage } from "./ReportPage";
 
@@ -29,6 +29,14 @@ it("reports a mission without the failure of another, and a failure without anot
   await open(<ReportPage route={{ page: "report", missionIds: ["nope"] }} />);
   expect(problems()).toBe(1);
   expect(document.querySelector("[data-testid=report-mission]")).toBeNull();
+});
+
+it("reports no quality of a bearing that a person entered", async () => {
+  const told = someBearing({ source: { kind: "person", name: "Ada" }, sweep_id: null, quality: 1 });
+  vi.spyOn(api, "events").mockResolvedValueOnce(record({ kind: "mission_drafted", spec: someSpec() }, told));
+  await open(<ReportPage route={{ page: "report", missionIds: ["m"] }} />);
+  const cells = document.querySelectorAll("[data-testid=report-bearings] tbody td");
+  expect([...cells].at(-1)!.textContent).toBe("–");
 });
 
 it("compares missions without a failure that is over", async () => {

@@ -122,7 +122,7 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
                     {t("sweep.bearing", { bearing: formatBearing(b.bearing_deg), sigma: formatNumber(b.sigma_deg, 1) })}
                     {excluded && ` (${t("sweep.excluded")})`}
                   </td>
-                  <td data-label={t("report.quality")}>{formatNumber(b.quality, 2)}</td>
+                  <td data-label={t("report.quality")}>{b.sweep_id ? formatNumber(b.quality, 2) : "–"}</td>
                 </tr>
               ))}
             </tbody>

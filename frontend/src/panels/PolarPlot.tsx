@@ -1,13 +1,13 @@
 // The sweep by hand: power against heading, the pattern's fit, the bearing with its sigma, other peaks.
 import { t } from "../i18n";
 import { arcPath, binnedPath, type PolarScale, polarPoint, polarScale, radius } from "../state/polar";
-import { formatBearing, formatNumber } from "../units/quantities";
+import { formatBearing } from "../units/quantities";
 
 export interface PolarData {
   binnedDb: readonly (number | null)[];
   fittedDb: readonly (number | null)[];
   samples: { headingDeg: number; db: number }[];
-  bearing: { deg: number; sigmaDeg: number; quality: number } | null;
+  bearing: { deg: number; sigmaDeg: number } | null;
   peaks: { deg: number; weight: number }[];
   rejected: boolean;
   /** What of the circle was turned through; goalDeg: what is meant to be. null: all of it, as ever. */
@@ -63,9 +63,8 @@ function Rings({ scale }: { scale: PolarScale | null }) {
 
 export function PolarPlot({ data }: { data: PolarData }) {
   const scale = polarScale([...data.binnedDb, ...data.samples.map((s) => s.db)]);
-  const words = data.bearing
-    ? t("sweep.plot", { bearing: formatBearing(data.bearing.deg), quality: formatNumber(data.bearing.quality, 2) })
-    : t("sweep.plotEmpty");
+  const words =
+    data.bearing && data.binnedDb.length > 0 ? t("sweep.plot", { bearing: formatBearing(data.bearing.deg) }) : t("sweep.plotEmpty");
   return (
     <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">
       <Rings scale={scale} />

@@ -2,6 +2,7 @@
 import { render } from "preact";
 import { act } from "preact/test-utils";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { t } from "../i18n";
 import { FakeSource } from "../sources/fakeSource";
 import { open } from "../state/open";
 import { selectedEmitter } from "../state/selection";
@@ -39,4 +40,21 @@ it("shows the turn under way to one emitter after a sweep of another was picked"
     selectedEmitter.value = "e2";
   });
   expect(document.querySelector("[data-testid=sweep-running]")).not.toBeNull();
+});
+
+it("shows no quality, no drift and no power of a bearing that a person entered", () => {
+  const told = { sweep_id: null, quality: 1, drift_m: 0, binned_db: [], fitted_db: [], remarks: [] };
+  const entered = someBearing({ ...told, source: { kind: "person", name: "Ada" } });
+  const source = new FakeSource();
+  open(source);
+  for (const recorded of record({ kind: "mission_drafted", spec: someSpec() }, entered)) source.tell({ type: "event", recorded });
+  act(() => {
+    vi.advanceTimersByTime(500);
+    render(<SweepPanel />, document.body);
+  });
+  const panel = document.querySelector("[data-testid=sweep]")!;
+  expect(panel.querySelector("[data-testid=sweep-bearing]")).not.toBeNull();
+  expect(panel.textContent).not.toContain(t("sweep.quality", { quality: "1.00" }));
+  expect(panel.textContent).not.toContain(t("sweep.drift", { length: "0 m" }));
+  expect(panel.querySelector("[data-testid=polar]")!.getAttribute("aria-label")).toBe(t("sweep.plotEmpty"));
 });

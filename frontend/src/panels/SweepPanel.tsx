@@ -51,7 +51,7 @@ function polarOf({ fact, excluded }: Sweep): PolarData {
     binnedDb: fact.binned_db,
     fittedDb: fact.fitted_db,
     samples: [],
-    bearing: measured && { deg: measured.bearing_deg, sigmaDeg: measured.sigma_deg, quality: measured.quality },
+    bearing: measured && { deg: measured.bearing_deg, sigmaDeg: measured.sigma_deg },
     peaks: measured?.peaks.map((p) => ({ deg: p.bearing_deg, weight: p.weight })) ?? [],
     rejected: excluded || !measured,
     sector: sectorOf(fact.turn),
@@ -156,9 +156,9 @@ function Facts({ sweep }: { sweep: Sweep }) {
         {id && <CountButton id={id} of={fact.bearing_id} leftOut={leftOut} words={leftOut ? "sweep.include" : "sweep.exclude"} />}
       </div>
       <div class="sweep-values">
-        <span>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</span>
+        {fact.sweep_id && <span>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</span>}
         {fact.snr_db !== null && <span>{t("sweep.snr", { snr: formatNumber(fact.snr_db, 0) })}</span>}
-        <span>{t("sweep.drift", { length: formatLength(fact.drift_m, settings.value.units) })}</span>
+        {fact.sweep_id && <span>{t("sweep.drift", { length: formatLength(fact.drift_m, settings.value.units) })}</span>}
       </div>
       {fact.peaks.length > 0 && (
         <div>

@@ -124,7 +124,7 @@ function wordsOf(event: Exclude<MissionEvent, EventOf<"priorities_changed">>, un
         bearing: formatBearing(event.bearing_deg),
         sigma: formatNumber(event.sigma_deg, 1),
         number: event.place_number,
-        quality: formatNumber(event.quality, 2),
+        quality: event.sweep_id ? formatNumber(event.quality, 2) : "–",
       });
     case "heard_on_the_way":
       return wayWords(event);

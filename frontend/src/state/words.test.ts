@@ -1,6 +1,7 @@
 // @vitest-environment happy-dom
 import { afterEach, describe, expect, it } from "vitest";
 import { reasonText, setLanguage, t } from "../i18n";
+import { formatBearing, formatNumber } from "../units/quantities";
 import type { EventOf, MissionEvent } from "../wire";
 import { CRAFT, EMITTER, ended, flown, leadingTo, phase, record, someBearing, someReason, someSpec, started } from "../wire/examples";
 import { NOBODY } from "./craft";
@@ -48,6 +49,17 @@ describe("an event in words", () => {
     expect(words(changed({ who: "failsafe", taken_by: "mode", mode: "RTL" }))).toBe(t("control.failsafe", { mode: "RTL" }));
     expect(words(changed({ who: "ours" }, "Ada"))).toBe(t("event.control_taken_back", { by: "Ada" }));
     expect([pilot, changed({ who: "ours" }, "Ada"), changed({ who: "ours" })].map(isMain)).toEqual([true, true, false]);
+  });
+
+  it("tells no quality of an imported bearing that no sweep stands behind", () => {
+    const told = someBearing({ source: { kind: "import", recording_id: "r" }, quality: 1, remarks: [] });
+    const of = (quality: string) =>
+      t("event.bearing_measured", {
+        ...{ bearing: formatBearing(told.bearing_deg), sigma: formatNumber(told.sigma_deg, 1) },
+        ...{ number: told.place_number, quality },
+      });
+    expect(words(told)).toBe(of("1.00"));
+    expect(words({ ...told, sweep_id: null })).toBe(of("–"));
   });
 
   it("names the checks that failed and the command that was refused", () => {
