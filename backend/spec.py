@@ -195,12 +195,13 @@ class LearnedErrors(Model):
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
-    and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+    bearing_errors: a stored specification that does not name them means independent ones; a new mission that does not,
+    and every suggested one, joint ones. learned: of joint errors, what the flights of this craft and antenna
     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
-    what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions. shared_errors: of
-    joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
-    stored specification that does not say so means that each is judged by itself.
+    what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions; a stored
+    specification that does not say so means peak and sigma, a new mission that does not the likelihood. shared_errors:
+    of joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
+    stored specification that does not say so means that each is judged by itself, a new mission that it counts.
     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
     means whole turns, and where it never stops they are whole whatever it says. whole_turns: from how many places all
     directions are heard before sectors are.

@@ -14,7 +14,7 @@ from backend.api.dependencies import MetersDep, MissionId, PrincipalDep, Service
 from backend.api.ordering import ordered, permit
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
-from backend.api.suggestion import with_errors_estimated
+from backend.api.suggestion import with_errors_said
 from backend.beside import beside
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
@@ -110,7 +110,7 @@ async def create_mission(
 ) -> Mission:
     """Draft a mission. The errors of bearings are estimated with the place unless the request says otherwise.
     mission_id: chosen by who asks, who may then ask again when no answer came: 409 where it was drafted."""
-    spec = with_errors_estimated(spec)
+    spec = with_errors_said(spec)
     wanted = None if mission_id is None else str(mission_id)
     return await _mission(services, await services.missions.drafts.create(spec, principal.name, wanted))
 
@@ -130,8 +130,10 @@ async def edit_mission(
     from_seq: Annotated[int | None, Query(ge=1)] = None,
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started. from_seq: `spec_seq` of what was edited,
-    409 when somebody has saved another one since; without it theirs is replaced unseen."""
-    await services.missions.drafts.edit(mission_id, with_errors_estimated(spec), principal.name, from_seq)
+    409 when somebody has saved another one since; without it theirs is replaced unseen. What the request does not say
+    of the errors of bearings, and of what a sweep tells, stays as it was."""
+    before = (await _mission(services, mission_id)).spec.sensor
+    await services.missions.drafts.edit(mission_id, with_errors_said(spec, before), principal.name, from_seq)
     return await _mission(services, mission_id)
 
 

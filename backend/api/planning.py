@@ -8,7 +8,7 @@ from fastapi.exceptions import RequestValidationError
 from backend.api.areas import AreaRefused, area_of
 from backend.api.dependencies import MissionId, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
-from backend.api.suggestion import with_errors_estimated
+from backend.api.suggestion import with_errors_said
 from backend.spec import MissionSpec, SearchArea
 from backend.wire.resources import (
     AreaImport,
@@ -64,7 +64,7 @@ async def area_outlook(mission_id: MissionId, search: SearchArea, services: Serv
 async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
     """Plan the first place of a mission that is not flown yet."""
     async with services.planning:
-        found = await services.missions.questions.preview(with_errors_estimated(spec))
+        found = await services.missions.questions.preview(with_errors_said(spec))
     return Preview(
         start=found.start,
         first_place=found.first_place,

@@ -48,14 +48,13 @@ def suggested_mission(home: Place) -> MissionSpec:
     return MissionSpec(name=NAME, area=area, sensor=SENSOR, planner=PLANNER)
 
 
-ESTIMATED = {"bearing_errors": "joint", "shared_errors": True, "sweep_evidence": "whole"}
-"""How new missions take the errors of bearings: estimated with the places, by all that sweeps of all emitters tell."""
+ERRORS = ("bearing_errors", "shared_errors", "sweep_evidence")
+"""What a specification says of the errors of bearings. A stored one that does not is from before they were estimated
+with the places, and means independent ones."""
 
 
-def with_errors_estimated(asked: MissionSpec) -> MissionSpec:
-    """A request that does not say how the errors of bearings hang together has them estimated with the places.
-
-    A stored specification that does not say it is from before they were, and means independent ones.
-    """
-    unsaid = {name: value for name, value in ESTIMATED.items() if name not in asked.sensor.model_fields_set}
-    return asked.model_copy(update={"sensor": asked.sensor.model_copy(update=unsaid)}) if unsaid else asked
+def with_errors_said(asked: MissionSpec, unsaid: SensorSpec = SENSOR) -> MissionSpec:
+    """A request that does not say how the errors of bearings hang together, or what a sweep tells, takes that from
+    `unsaid`: of the suggested mission, or of the draft that it edits."""
+    taken = {name: getattr(unsaid, name) for name in ERRORS if name not in asked.sensor.model_fields_set}
+    return asked.model_copy(update={"sensor": asked.sensor.model_copy(update=taken)}) if taken else asked

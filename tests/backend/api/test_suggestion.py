@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from backend.api.suggestion import suggested_mission, with_errors_estimated
+from backend.api.suggestion import suggested_mission, with_errors_said
 from backend.search.forecast import forecast, preview
 from backend.search.localization import localization
 from backend.search.planning import next_place_together
@@ -70,7 +70,7 @@ def test_what_a_request_says_of_errors_stands_and_what_it_does_not_is_estimated_
     spec = suggested_mission(HOME)
     for said in ({}, {"bearing_errors": "independent"}, {"shared_errors": False}, {"sweep_evidence": "peak"}):
         asked = spec.model_copy(update={"sensor": SensorSpec.model_validate(said)})
-        found = with_errors_estimated(asked).sensor
+        found = with_errors_said(asked).sensor
         assert found.bearing_errors == said.get("bearing_errors", "joint")
         assert found.shared_errors == said.get("shared_errors", True)
         assert found.sweep_evidence == said.get("sweep_evidence", "whole")

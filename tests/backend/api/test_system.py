@@ -71,6 +71,25 @@ async def test_a_request_that_names_no_model_of_errors_has_them_estimated(client
     assert edited.json()["spec"]["sensor"].get("sigma_deg") == (sensor or {}).get("sigma_deg", 7.0)
 
 
+@pytest.mark.parametrize(
+    "errors",
+    [
+        {"bearing_errors": "independent", "shared_errors": False, "sweep_evidence": "peak"},
+        {"bearing_errors": "joint", "shared_errors": False, "sweep_evidence": "peak"},
+        {"bearing_errors": "joint", "shared_errors": True, "sweep_evidence": "whole"},
+    ],
+)
+async def test_an_edit_that_does_not_name_what_bearings_are_taken_for_leaves_it(client, errors):
+    spec = (await client.get("/api/defaults")).json()["spec"]
+    drafted = (await client.post("/api/missions", json={**spec, "sensor": errors})).json()
+    url = f"/api/missions/{drafted['mission_id']}/spec"
+    edited = (await client.put(url, json={**spec, "sensor": {"sigma_deg": 5.0}})).json()["spec"]["sensor"]
+    assert edited["sigma_deg"] == 5.0
+    assert {name: edited[name] for name in errors} == errors
+    named = (await client.put(url, json={**spec, "sensor": {"sweep_evidence": "whole"}})).json()["spec"]["sensor"]
+    assert {name: named[name] for name in errors} == {**errors, "sweep_evidence": "whole"}
+
+
 async def test_without_a_vehicle_the_area_lies_around_the_configured_place(client, vehicle, settings):
     vehicle.heard_last = GONE
     defaults = (await client.get("/api/defaults")).json()
