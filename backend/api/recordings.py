@@ -105,7 +105,7 @@ async def import_recording(
 async def _must_fit(services: Services, mission_id: str, upload: Upload) -> None:
     """Raises ApiProblem unless there is room for its raw sweeps, or they are there already."""
     imports = await services.journal.read_kinds(mission_id, ("recording_imported",))
-    if imported_before(imports, upload.recording_id):
+    if imported_before(mission_id, imports, upload):
         return
     sweeps = [recorded.sweep for recorded in upload.recording.sweeps]
     size_bytes = sum(sweep.at_s.nbytes + sweep.heading_deg.nbytes + sweep.power_db.nbytes for sweep in sweeps)

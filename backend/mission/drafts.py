@@ -123,7 +123,7 @@ class Drafts:
         equipment, craft = self.equipment, self.equipment.first
         async with self.records.lock(mission_id):
             recorded = await self.records.of_kinds(mission_id, OF_IMPORTS)
-            before = imported_before(recorded, upload.recording_id)
+            before = imported_before(mission_id, recorded, upload)
             if before:
                 return before, True
             runner = self.flights.running(mission_id)
@@ -148,7 +148,7 @@ class Drafts:
                 bearings = tuple(fact for fact in found.facts if not isinstance(fact, BeliefUpdated))
                 await self.flights.give(mission_id, BearingsArrived(bearings))
             recorded = await self.records.of_kinds(mission_id, OF_IMPORTS)
-            new = imported_before(recorded, upload.recording_id)
+            new = imported_before(mission_id, recorded, upload)
         log.info("mission %s: %s imported by %s", mission_id, upload.filename, by)
         return new, False
 

@@ -6,7 +6,7 @@ Pure, apart from the time it takes: call it off the event loop. Nothing is store
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from uuid import NAMESPACE_URL, uuid5
@@ -86,13 +86,23 @@ OF_IMPORTS = ("recording_imported", "bearing_measured", "sweep_rejected", "heard
 """The facts that may name a recording as their source, and what says that one was imported."""
 
 
-def imported_before(recorded: Sequence[Recorded], recording_id: str) -> list[Recorded]:
+def bearing_id(mission_id: str, recording_id: str, line: int) -> str:
+    """Of the bearing in that line of a file: the same when it is imported again."""
+    return str(uuid5(NAMESPACE_URL, f"{mission_id}/{recording_id}/line {line}"))
+
+
+def imported_before(mission_id: str, recorded: Sequence[Recorded], upload: Upload) -> list[Recorded]:
     """The import of the same recording and the facts of its sweeps or bearings; empty when there was none."""
     for record in recorded:
-        if isinstance(record.event, RecordingImported) and record.event.recording_id == recording_id:
-            source = ImportSource(recording_id=recording_id)
-            return [record, *(r for r in recorded if getattr(r.event, "source", None) == source)]
+        if isinstance(record.event, RecordingImported) and record.event.recording_id == upload.recording_id:
+            source = ImportSource(recording_id=upload.recording_id)
+            ids = {bearing_id(mission_id, upload.recording_id, one.line) for one in upload.recording.bearings}
+            return [record, *(r for r in recorded if _of(r.event, source, ids))]
     return []
+
+
+def _of(event: Event, source: ImportSource, bearing_ids: Collection[str]) -> bool:
+    return getattr(event, "source", None) == source or getattr(event, "bearing_id", None) in bearing_ids
 
 
 def must_be_few(pieces: int) -> None:

@@ -1,21 +1,21 @@
-"""Bearings out of a file as facts of a mission: one source, with errors of its own. Pure."""
+"""Bearings out of a file as facts of a mission: one source with errors of its own, or one a station. Pure."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
 
-from backend.events import BearingMeasured, ImportSource
+from backend.events import BearingMeasured, BearingSource, ImportSource, PersonSource
 from backend.reasons import search as reasons
 from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
 from backend.search.importing import (
     Import,
     Upload,
+    bearing_id,
     begun,
     emitter_heard,
     import_fact,
@@ -55,8 +55,8 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, 
         refuse_far(one.place, mission)
     sure = _with_sigmas(heard, mission, state.home or corner_of(mission.area))
     facts = [
-        _fact(mission_id, state, upload, emitter, one, number, at_s)
-        for number, (one, at_s) in enumerate(zip(sure, times, strict=True), start=last + 1)
+        _fact(mission_id, state, upload, emitter, source, one, number, at_s)
+        for number, (one, source, at_s) in enumerate(zip(sure, _sources(upload, heard), times, strict=True), last + 1)
     ]
     begins = import_fact(upload, emitter, by, first_s, remarks, sweep_ids=[], antenna=None)
     if not believed:
@@ -83,11 +83,19 @@ def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:
     return one.frequency_hz is None or same_channel(emitter, one.frequency_hz)
 
 
+def _sources(upload: Upload, bearings: Sequence[RecordedBearing]) -> list[BearingSource]:
+    """Of a log of several stations each of them, by the name under which it reports live: each has a compass."""
+    if len({one.tag for one in bearings if one.tag}) > 1:
+        return [PersonSource(name=str(one.tag)) for one in bearings]
+    return [ImportSource(recording_id=upload.recording_id)] * len(bearings)
+
+
 def _fact(
     mission_id: str,
     state: SearchState,
     upload: Upload,
     emitter: EmitterSpec,
+    source: BearingSource,
     one: RecordedBearing,
     number: int,
     at_s: float | None,
@@ -95,8 +103,8 @@ def _fact(
     sigma_deg = min(max(one.sigma_deg, LEAST_SIGMA_DEG), MOST_SIGMA_DEG)
     return BearingMeasured(
         emitter_id=emitter.emitter_id,
-        source=ImportSource(recording_id=upload.recording_id),
-        bearing_id=str(uuid5(NAMESPACE_URL, f"{mission_id}/{upload.recording_id}/line {one.line}")),
+        source=source,
+        bearing_id=bearing_id(mission_id, upload.recording_id, one.line),
         sweep_id=None,
         place_number=number,
         place=one.place,

@@ -1,8 +1,9 @@
-"""Files of bearings brought into a mission: all or none, once, as one source with errors of its own."""
+"""Files of bearings brought into a mission: all or none, once, as one source (or one a station) with its own errors."""
 
 from __future__ import annotations
 
 import math
+from uuid import uuid4
 
 import pytest
 
@@ -53,6 +54,28 @@ async def test_a_krakens_file_localizes_and_counts_once(client, services):
     again = await bring(client, mission_id, kraken())
     assert (again.status_code, again.json()["already"], len(again.json()["sweeps"])) == (200, True, 4)
     assert len(await facts(services, mission_id, "bearing_measured")) == 4
+
+
+async def test_each_station_of_a_krakens_log_is_a_source_of_its_own(client, services):
+    """Two whose compasses differ by 30 degrees had one between them."""
+    mission_id = await draft(client)
+    lines = [
+        f"{1700000000000 + 300_000 * n}, {(bearing_deg(lon, lat) + off) % 360.0:.2f}, 80, -31, 868300000, UCA, 412,"
+        f" {station}, {lat}, {lon}, 0.0, 0.0, GPS, R"
+        for station, off in (("roof", 15.0), ("van", -15.0))
+        for n, (lon, lat) in enumerate(PLACES)
+    ]
+    told = (await bring(client, mission_id, "\n".join(lines))).json()
+    assert len(told["sweeps"]) == 8
+    (belief,) = await facts(services, mission_id, "belief_updated")
+    assert {one.source.name: one.bias_deg > 0.0 for one in belief.sources} == {"roof": True, "van": False}
+    again = await bring(client, mission_id, "\n".join(lines))
+    assert (again.status_code, again.json()["already"], len(again.json()["sweeps"])) == (200, True, 8)
+    muted = {
+        "command_id": str(uuid4()),
+        "command": {"kind": "mute_source", "of": "person", "name": "van", "muted": True, "reason": ""},
+    }
+    assert (await client.post(f"/api/missions/{mission_id}/commands", json=muted)).json()["accepted"]
 
 
 async def test_a_file_is_called_what_can_be_shown_of_its_name(client, services):
