@@ -28,6 +28,7 @@ from backend.reasons import Interrupted, refusals
 from backend.reasons.search import WhichEmitter
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.inputs import Reviewed
+from backend.search.reported import must_be_near
 from backend.spec import Place
 
 MOST_VARIANTS = 12
@@ -67,7 +68,7 @@ class Review:
     ) -> None:
         """place None: looked for and not found. What the flight taught of its compass is judged again by it.
 
-        Raises MissionInputError for an emitter that is not looked for.
+        Raises MissionInputError for an emitter that is not looked for, and for a place far off.
         """
         known = await self.records.load(mission_id)
         emitters = tuple(known[0].search.emitters)
@@ -76,6 +77,8 @@ class Review:
         about = emitters[0] if emitter_id is None else emitter_id
         if about not in emitters:
             raise MissionInputError(refusals.NoSuchEmitter(about), "emitter_id")
+        if place is not None:
+            must_be_near(known[0].search.mission, place)
         await self._record(mission_id, TruthNoted(emitter_id=about, place=place, accuracy_m=accuracy_m, how=how, by=by))
         state, _ = await self.records.load(mission_id, known)
         started = await self.records.of_kinds(mission_id, ("mission_started",))

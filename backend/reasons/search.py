@@ -148,12 +148,14 @@ class RecordingTooFar:
 
 
 @dataclass(frozen=True, slots=True)
-class BearingTooFar:
+class PlaceTooFar:
+    """Of a bearing that is reported, or where an emitter was found."""
+
     distance_m: float
-    code: Literal["bearing_too_far"] = "bearing_too_far"
+    code: Literal["place_too_far"] = "place_too_far"
     english: ClassVar[Words] = Words(
-        "The bearing was taken {distance_m} from the search's area.",
-        "Check where you stand, or report it to the search that it belongs to.",
+        "The place is {distance_m} from the search's area.",
+        "Check the place, or report it to the search that it belongs to.",
     )
 
 
@@ -205,7 +207,7 @@ class WhichEmitter:
     emitters: int
     code: Literal["which_emitter"] = "which_emitter"
     english: ClassVar[Words] = Words(
-        "The search has {emitters} emitters; the bearing does not say which one was heard.", "Name the emitter."
+        "The search has {emitters} emitters, and none of them is named.", "Name the emitter."
     )
 
 
@@ -371,7 +373,7 @@ SearchReason = (
     | LocalizedAgainst
     | RecordingTooLong
     | RecordingTooFar
-    | BearingTooFar
+    | PlaceTooFar
     | AskedFromTooFar
     | HeardElsewhere
     | KrakenUnreadable

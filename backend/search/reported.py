@@ -16,11 +16,11 @@ from backend.reasons.refusals import NoSuchEmitter
 from backend.search.area import centre_of
 from backend.search.errors import MissionInputError
 from backend.search.state import SearchState
-from backend.spec import Place
+from backend.spec import MissionSpec, Place
 from hardware.frame import LocalFrame
 
 FAR_M = 50_000.0
-"""A bearing from further away belongs to another search."""
+"""What is told from further away, or found there, belongs to another search."""
 COMPASS_SIGMA_DEG = 5.0
 """Of a hand-held compass, as all bearings of one source have it in common."""
 COMPASS_SHARE = 0.4
@@ -57,11 +57,7 @@ class ReportedBearing:
 
 def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> BearingMeasured:
     """Raises MissionInputError for a place far off, a time that cannot be, or an emitter that is not told."""
-    mission = state.mission
-    east, north = LocalFrame(centre_of(mission.area)).to_enu(report.place)
-    away_m = math.hypot(east, north)
-    if not away_m <= FAR_M:
-        raise MissionInputError(reasons.BearingTooFar(away_m), "place")
+    must_be_near(state.mission, report.place)
     age_s = now_s - report.taken_at_s
     if not -AHEAD_S <= age_s <= LATEST_S:
         raise MissionInputError(reasons.BearingTimeImpossible(age_s), "taken_at_utc")
@@ -86,6 +82,14 @@ def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> 
         remarks=remarks,
         taken_at_s=report.taken_at_s,
     )
+
+
+def must_be_near(mission: MissionSpec, place: Place) -> None:
+    """Of a place that somebody tells. Raises MissionInputError."""
+    east, north = LocalFrame(centre_of(mission.area)).to_enu(place)
+    away_m = math.hypot(east, north)
+    if not away_m <= FAR_M:
+        raise MissionInputError(reasons.PlaceTooFar(away_m), "place")
 
 
 def on_our_clock(report: ReportedBearing, now_s: float, wall_s: float) -> ReportedBearing:

@@ -1046,10 +1046,7 @@ export const reasonsEn: ReasonTable = {
     "The recording was taken {distance_m} from the mission's area.",
     "Import it into a mission whose area is around it, or name the right place.",
   ],
-  bearing_too_far: [
-    "The bearing was taken {distance_m} from the search's area.",
-    "Check where you stand, or report it to the search that it belongs to.",
-  ],
+  place_too_far: ["The place is {distance_m} from the search's area.", "Check the place, or report it to the search that it belongs to."],
   asked_from_too_far: [
     "You are {distance_m} from the search's area: too far to be advised where to listen.",
     "Go nearer, or say where you will be.",
@@ -1063,7 +1060,7 @@ export const reasonsEn: ReasonTable = {
     'Send the text of its DOA_value.html, written with the output format "Kraken App".',
   ],
   bearing_time_impossible: ["The bearing's time is in the future or more than a day ago.", "Set the clock of whatever sent it."],
-  which_emitter: ["The search has {emitters} emitters; the bearing does not say which one was heard.", "Name the emitter."],
+  which_emitter: ["The search has {emitters} emitters, and none of them is named.", "Name the emitter."],
   taken_earlier: ["It was taken {age_s} before it arrived."],
   import_remark: [
     "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in|bearings_stand=The place or antenna that was named changes nothing about the bearings in} {file}.",

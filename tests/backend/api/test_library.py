@@ -223,6 +223,16 @@ async def test_the_truth_is_told_and_the_last_word_counts(client):
     assert (await client.put(f"/api/missions/{mission_id}/truth", json=wrong)).status_code == 422
 
 
+async def test_a_place_that_nobody_can_have_found_the_emitter_at_is_no_truth(client):
+    """A phone without a fix, or latitude and longitude the wrong way round: the season's errors were of continents, and
+    the next flight's compass learned from them."""
+    mission_id = await draft(client)
+    for place in ({"lat": 0.0, "lon": 0.0}, {"lat": 7.202, "lon": 50.601}):
+        reply = await client.put(f"/api/missions/{mission_id}/truth", json={"place": place, "how": "typed"})
+        assert (reply.status_code, reply.json()["reason"]["code"]) == (422, "place_too_far")
+    assert (await client.get("/api/calibration")).json()["missions"] == 0
+
+
 async def damaged(settings, mission_id: str, *facts: Event) -> None:
     """With these facts besides, written by a server before; then its draft is no text any more."""
     spool = Spool(settings.data_dir / "before.spool", 64 * 1024)

@@ -10,7 +10,7 @@ from walks import Walk
 
 from backend.events import PersonSource
 from backend.reasons.refusals import NoSuchEmitter
-from backend.reasons.search import BearingTimeImpossible, BearingTooFar, TakenEarlier, WhichEmitter
+from backend.reasons.search import BearingTimeImpossible, PlaceTooFar, TakenEarlier, WhichEmitter
 from backend.search.errors import MissionInputError
 from backend.search.inputs import BearingsArrived
 from backend.search.planner_bearings import own_sigma_deg, source_name
@@ -42,7 +42,7 @@ def test_one_that_was_kept_while_offline_says_how_old_it_is() -> None:
 @pytest.mark.parametrize(
     ("changes", "reason", "field"),
     [
-        ({"place": Place(51.0, 7.0)}, BearingTooFar, "place"),
+        ({"place": Place(51.0, 7.0)}, PlaceTooFar, "place"),
         ({"taken_at_s": NOW_S - LATEST_S - 1.0}, BearingTimeImpossible, "taken_at_utc"),
         ({"taken_at_s": NOW_S + AHEAD_S + 1.0}, BearingTimeImpossible, "taken_at_utc"),
         ({"emitter_id": "other"}, NoSuchEmitter, "emitter_id"),

@@ -139,15 +139,12 @@ export const recording = {
     "Die Peilung wurde auf {frequency_hz} gehört, dort wird nichts gesucht.",
     "Die Station auf eine Frequenz der Suche abstimmen.",
   ],
-  bearing_too_far: [
-    "Die Peilung wurde {distance_m} vom Suchgebiet entfernt genommen.",
-    "Prüfen, wo man steht, oder sie der Suche melden, zu der sie gehört.",
-  ],
+  place_too_far: ["Der Ort ist {distance_m} vom Suchgebiet entfernt.", "Den Ort prüfen, oder ihn der Suche melden, zu der er gehört."],
   bearing_time_impossible: [
     "Die Zeit der Peilung liegt in der Zukunft oder mehr als einen Tag zurück.",
     "Die Uhr des Geräts stellen, das sie gesendet hat.",
   ],
-  which_emitter: ["Die Suche hat {emitters} Sender; die Peilung sagt nicht, welcher gehört wurde.", "Den Sender nennen."],
+  which_emitter: ["Die Suche hat {emitters} Sender, und keiner ist genannt.", "Den Sender nennen."],
   taken_earlier: ["Sie wurde {age_s} vor ihrem Eintreffen genommen."],
   recording_too_far: [
     "Die Aufnahme entstand {distance_m} vom Gebiet der Mission entfernt.",
