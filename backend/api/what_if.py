@@ -183,13 +183,21 @@ def _flown(
     return found, said, then
 
 
+def _with_sigma(fact: BearingMeasured, sigma_deg: float | None) -> BearingMeasured:
+    """None: its own. Of a smaller one what all bearings of its source have in common is a part, as large as it was."""
+    if sigma_deg is None:
+        return fact
+    smaller = min(1.0, sigma_deg / fact.sigma_deg)
+    shares = {name: smaller * getattr(fact, name) for name in ("heading_sigma_deg", "pattern_sigma_deg")}
+    return fact.model_copy(update={"sigma_deg": sigma_deg, "likelihood": None, **shares})
+
+
 def _others_supposed(search: SearchState, wanted: Supposition) -> SearchState:
     """The search with what is wanted otherwise of the bearings of all its emitters."""
-    sigma = {} if wanted.sigma_deg is None else {"sigma_deg": wanted.sigma_deg, "likelihood": None}
     emitters = {
         name: replace(
             emitter,
-            measured=tuple(fact.model_copy(update=sigma) for fact in emitter.measured),
+            measured=tuple(_with_sigma(fact, wanted.sigma_deg) for fact in emitter.measured),
             excluded=emitter.excluded.union(wanted.without),
         )
         for name, emitter in search.emitters.items()
@@ -250,8 +258,7 @@ def _taken(
         heard = fact if antenna is None else antenna.heard(mission, fact)
         if heard.kind == "bearing_measured":
             with_bearing.add(heard.place_number)
-            if wanted.sigma_deg is not None:
-                heard = heard.model_copy(update={"sigma_deg": wanted.sigma_deg, "likelihood": None})
+            heard = _with_sigma(heard, wanted.sigma_deg)
         taken.append(heard)
     return taken
 
