@@ -114,7 +114,8 @@ def _bearing(mission_id: str, callsign: str, fact: BearingMeasured, at: datetime
     SubElement(detail, "bearing", value=f"{fact.bearing_deg % 360.0:.2f}")
     SubElement(detail, "inclination", value="0.0")
     SubElement(detail, "contact", callsign=callsign)
-    SubElement(detail, "remarks").text = f"sigma {fact.sigma_deg:.1f} degrees, quality {fact.quality:.2f}"
+    quality = "" if fact.sweep_id is None else f", quality {fact.quality:.2f}"
+    SubElement(detail, "remarks").text = f"sigma {fact.sigma_deg:.1f} degrees{quality}"
     return event
 
 

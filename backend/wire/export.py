@@ -58,8 +58,8 @@ def journal_json(recorded: Sequence[Recorded], tracks: Tracks) -> str:
 def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
     """The bearing file of the UAV-RT project, without header: tag id (the emitter's number), sweep, bearing (deg true),
     quality, lat, lon, altitude above the home of its craft (m; theirs is above ground), altitude AMSL (m), start and
-    end (UTC epoch seconds; of a bearing that no craft of the mission took, both are when it was brought in). An
-    altitude that is not known is empty."""
+    end (UTC epoch seconds; of a bearing that no craft of the mission took, both are when it was taken, or brought in
+    where nobody said). An altitude that is not known is empty; the quality of a bearing without a sweep is 1."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     emitters = tuple(folded(recorded).emitters.values())
@@ -76,7 +76,8 @@ def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
             craft_id = event.source.craft_id if isinstance(event.source, CraftSource) else None
             altitude_m, home_m = altitude_amsl_m(event), homes_amsl_m.get(craft_id)
             above_m = None if altitude_m is None or home_m is None else altitude_m - home_m
-            end_s = record.at_utc.timestamp()
+            told_s = record.at_utc.timestamp()
+            end_s = told_s if craft_id is not None or event.taken_at_s is None else event.taken_at_s
             start_s = began_s.get(craft_id, end_s)
             writer.writerow(
                 [
@@ -183,7 +184,7 @@ def emitter_features(state: SearchState, emitter: EmitterState, times_utc: Mappi
             **several,
             "bearing_deg": fact.bearing_deg,
             "sigma_deg": fact.sigma_deg,
-            "quality": fact.quality,
+            "quality": None if fact.sweep_id is None else fact.quality,
             "excluded": not emitter.counts(fact),
             "at_utc": times_utc[fact.bearing_id].isoformat(),
         }

@@ -134,6 +134,16 @@ def test_an_altitude_of_a_recording_is_known_without_a_home() -> None:
     assert [row[6:8] for row in rows(recorded)] == [["", "240.000"]]
 
 
+def test_a_bearing_without_a_sweep_has_no_quality_and_the_time_at_which_it_was_taken() -> None:
+    taken = by(PersonSource(name="Ada")).model_copy(update={"sweep_id": None, "quality": 1.0, "taken_at_s": 1.7e9})
+    recorded = numbered([mission(FOX)[0], taken, by(PersonSource(name="Ben"), 2)])
+    drawn = [told["properties"] for told in features(recorded) if told["properties"]["what"] == "bearing"]
+    assert [told["quality"] for told in drawn] == [None, 0.9]
+    remarks = [told.text or "" for event in cot_events(recorded) for told in event.iter("remarks")]
+    assert ["quality" in remark for remark in remarks] == [False, True]
+    assert rows(recorded)[0][8:] == ["1700000000.000000"] * 2
+
+
 @pytest.mark.parametrize("sweep_id", ['=HYPERLINK("http://x")', "+1", "-1", "@SUM(A1)", "\t=1"])
 def test_no_cell_is_a_formula(sweep_id) -> None:
     fact = bearing(1, 50.622, 7.202, 45.0).model_copy(update={"sweep_id": sweep_id})
