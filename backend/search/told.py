@@ -41,7 +41,7 @@ FACTS_NEEDED = (
     "belief_updated",
     "truth_noted",
 )
-RECKONING = 3
+RECKONING = 4
 """Of `told`: one more with every change of what it says, since what it said is kept."""
 LEAST_SIGMA_DEG = 0.1
 
@@ -172,11 +172,14 @@ def _flown(recorded: Sequence[Recorded]) -> dict[str, Flown]:
 
 
 def _errors(recorded: Sequence[Recorded], known: Mapping[str, Place]) -> Iterable[ToldError]:
-    """Of the counted bearings that a craft took, of emitters whose place is known."""
+    """Of the counted bearings that a craft took, of emitters whose place is known and was the same all the time."""
+    specs = [r.event.spec for r in recorded if isinstance(r.event, MissionDrafted | MissionEdited)]
+    moving = {one.emitter_id for spec in specs[-1:] for one in spec.emitters if one.movement.kind != "still"}
+    places = {emitter: place for emitter, place in known.items() if emitter not in moving}
     for fact in counted(record.event for record in recorded):
-        if fact.emitter_id not in known or not isinstance(fact.source, CraftSource):
+        if fact.emitter_id not in places or not isinstance(fact.source, CraftSource):
             continue
-        east, north = LocalFrame(fact.place).to_enu(known[fact.emitter_id])
+        east, north = LocalFrame(fact.place).to_enu(places[fact.emitter_id])
         wanted = math.degrees(math.atan2(east, north))
         error_deg = (fact.bearing_deg - wanted + 180.0) % 360.0 - 180.0
         yield ToldError(fact.source.craft_id, fact.place, error_deg, max(fact.sigma_deg, LEAST_SIGMA_DEG))
