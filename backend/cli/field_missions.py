@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Literal
 
@@ -26,7 +26,7 @@ from backend.reasons.turning import WayToldEnough
 from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
 from backend.search.never_stop import PAUSE_S, turn_or_pass
-from backend.search.planning import decide, foreseen
+from backend.search.planning import decide, foreseen, in_nine_of_ten
 from backend.search.sector import (
     GoOn,
     Stop,
@@ -51,7 +51,7 @@ from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
 from planner.geometry import bounds
 from planner.motion import flight_time, turn_between
-from planner.types import FullMotion
+from planner.types import Decision, FloatArray, FullMotion
 
 CRAFT_ID = "craft-1"
 HOME = Place(50.6234, 7.2046)
@@ -99,7 +99,8 @@ class FieldOptions:
 
 @dataclass(frozen=True, slots=True)
 class FieldMission:
-    """What came of one. error_m, stated_m, in_c95: at the end. off_deg: of the accepted bearings from beyond FAR_M."""
+    """What came of one. error_m, stated_m, in_c95: at the end. off_deg: of the accepted bearings from beyond FAR_M.
+    foretold: by each plan: bearings so far, when, and until localized in the mean and in nine of ten, s."""
 
     seed: int
     localized: bool
@@ -111,6 +112,7 @@ class FieldMission:
     rejected: int
     turned_deg: float
     off_deg: tuple[float, ...]
+    foretold: tuple[tuple[int, float, float, float], ...] = ()
 
     @property
     def false_claim(self) -> bool:
@@ -153,8 +155,8 @@ class FieldStudy:
     task: Localization
     pattern: AntennaPattern
     finder: SparseDirectionFinder
-    first: tuple[float, float] | None = None
-    """Where missions take their first bearing: what is known before it is the same in all."""
+    first: Decision | None = None
+    """Of where missions take their first bearing: what is known before it is the same in all."""
 
     @classmethod
     def of(cls, options: FieldOptions, spec: MissionSpec | None = None) -> FieldStudy:
@@ -186,9 +188,12 @@ class FieldStudy:
         here, heading, time_s = HOME_XY, 0.0, 0.0
         sweeps, rejected, passed, turned_deg = 0, 0, 0, 0.0
         way_deg, turned_at, avoid = 0.0, list[tuple[float, float]](), list[tuple[float, float]]()
+        foretold = list[tuple[int, float, float, float]]()
         fact, belief = task.belief_fact(measured)
         while not fact.localized and sweeps + passed < self.spec.localization.maximum_bearings:
-            place = self._choose(task, belief, measured, here, rng, avoid)
+            place, times = self._choose(task, belief, measured, here, rng, avoid)
+            if (in_90 := in_nine_of_ten(times)) is not None:
+                foretold.append((len(measured), time_s, float(times.mean()), in_90))
             way = np.array(place) - np.array(here)
             length, flown_s = float(np.hypot(*way)), 0.0
             if length > 0.0:
@@ -232,7 +237,8 @@ class FieldStudy:
                     avoid.append(place)
                     break
             fact, belief = task.belief_fact(measured)
-        return self._ended(field, fact, belief, measured, time_s, rejected, turned_deg + way_deg), belief
+        ended = self._ended(field, fact, belief, measured, time_s, rejected, turned_deg + way_deg)
+        return replace(ended, foretold=tuple(foretold)), belief
 
     def _passes(self, leg: HeardOnTheWay, measured: Sequence[BearingMeasured], fact: BeliefUpdated) -> bool:
         """Whether a mission that never stops does not turn after this leg."""
@@ -246,7 +252,7 @@ class FieldStudy:
         here, time_s, circle_s = (0.0, 0.0), 0.0, 360.0 / self.options.turn_rate_deg_s
         fact, belief = task.belief_fact(measured)
         while not fact.localized and time_s < LATE_S:
-            way = circling(here, self._choose(task, belief, measured, here, rng), nose_deg, circle_s)
+            way = circling(here, self._choose(task, belief, measured, here, rng)[0], nose_deg, circle_s)
             sweep, reading = heard_circling(field, way, circles, self.finder, self.pattern)
             here, nose_deg = (float(way.x[-1]), float(way.y[-1])), float(way.nose_deg[-1])
             time_s += circle_s
@@ -293,18 +299,17 @@ class FieldStudy:
         here: tuple[float, float],
         rng: np.random.Generator,
         avoid: Sequence[tuple[float, float]] = (),
-    ) -> tuple[float, float]:
+    ) -> tuple[tuple[float, float], FloatArray]:
+        """With the times (n,) s that the plan foretells; a rival foretells none."""
         rival = RIVALS.get("fisher" if self.options.planner == GYRATION else self.options.planner)
         if rival is not None:
-            return rival(foreseen(task.problem, measured, belief), belief, here, rng)
+            return rival(foreseen(task.problem, measured, belief), belief, here, rng), np.empty(0)
         begins = here == HOME_XY and not measured and not task.stretches and not avoid
-        if begins and self.first is not None:
-            return self.first
-        decision = decide(task, belief, measured, here, avoid)
-        place = decision.x, decision.y
+        known = self.first if begins else None
+        decision = decide(task, belief, measured, here, avoid) if known is None else known
         if begins:
-            self.first = place
-        return place
+            self.first = decision
+        return (decision.x, decision.y), decision.times
 
     def _swinging(
         self,

@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import cast, get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 
@@ -157,7 +157,14 @@ def _kept(folder: Path | None, setting: Setting, name: str) -> dict[int, FieldMi
     if folder is None or not (path := _path(folder, setting, name)).exists():
         return {}
     told = [json.loads(line) for line in path.read_text().splitlines()]
-    return {one["seed"]: FieldMission(**{**one, "off_deg": tuple(one["off_deg"])}) for one in told}
+    return {one["seed"]: _mission(**one) for one in told}
+
+
+def _mission(
+    *, off_deg: list[float], foretold: Sequence[tuple[int, float, float, float]] = (), **rest: Any
+) -> FieldMission:
+    plans = tuple((bearings, at_s, mean_s, in_90_s) for bearings, at_s, mean_s, in_90_s in foretold)
+    return FieldMission(off_deg=tuple(off_deg), foretold=plans, **rest)
 
 
 def _keep(folder: Path | None, setting: Setting, name: str, mission: FieldMission) -> None:
