@@ -27,7 +27,7 @@ class LinkWatch:
         heard = telemetry.heard_at_s
         silence = VehicleLinkLost(None if heard is None else now_s - heard)
         found: list[inputs.CraftInput] = []
-        found += self._change("vehicle", None if telemetry.connected else silence, now_s)
+        found += self._change("vehicle", None if telemetry.connected else silence, now_s, heard)
         found += self.look_at_gps(telemetry, now_s)
         found += self._change("receiver", trouble, now_s)
         self._console_seen |= bool(consoles)
@@ -42,10 +42,12 @@ class LinkWatch:
         lost = telemetry.position_lost_since_s is not None
         return self._change("gps", PlaceUnknown() if lost else None, now_s)
 
-    def _change(self, link: Link, trouble: Reason | None, now_s: float) -> list[inputs.CraftInput]:
-        """trouble None: it is up."""
+    def _change(
+        self, link: Link, trouble: Reason | None, now_s: float, heard_at_s: float | None = None
+    ) -> list[inputs.CraftInput]:
+        """trouble None: it is up. heard_at_s: over it last, where that is known: a loss is noticed later."""
         if trouble is not None and link not in self._down_since_s:
-            self._down_since_s[link] = now_s
+            self._down_since_s[link] = now_s if heard_at_s is None else heard_at_s
             return [inputs.LinkDown(link, trouble)]
         if trouble is None and link in self._down_since_s:
             if link == "vehicle":

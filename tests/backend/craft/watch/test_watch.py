@@ -111,7 +111,19 @@ def test_a_link_that_goes_and_comes_is_noticed_once_each_way(scene: Scene) -> No
     scene.vehicle.heard = True
     (up,) = scene.tick(5)
     assert isinstance(up, inputs.LinkUp)
-    assert up.outage_s == pytest.approx(1.0)
+    assert up.outage_s == pytest.approx(1.2)
+
+
+def test_an_outage_of_the_vehicle_counts_from_when_it_was_heard_last(scene: Scene) -> None:
+    """Its loss is noticed seconds later."""
+    scene.see(battery_at_s=scene.clock.at)
+    scene.clock.at += 3.0
+    scene.vehicle.heard = False
+    scene.tick(20)
+    scene.vehicle.heard = True
+    (up,) = scene.tick()
+    assert isinstance(up, inputs.LinkUp)
+    assert up.outage_s == pytest.approx(3.0 + 21 * 0.2)
 
 
 def test_an_odd_clock_is_told_once_each_way_and_not_forgotten_while_the_link_is_lost(scene: Scene) -> None:
