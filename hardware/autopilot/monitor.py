@@ -72,6 +72,9 @@ STREAMS: tuple[tuple[int, float], ...] = (
 )
 MODE_SWITCH_HZ, SWITCH_ATTEMPTS = 5.0, 3
 LINK_LOST_WALL_S = 3.0
+UNANSWERED_WALL_S = 1.0
+"""Longer without an answer to our five questions a second, it may not hear us, and may act on that: preflight wants two
+seconds of an autopilot's patience at least, and what it heard last may have been sent a second ago."""
 MODE_S = 0.2
 """Longer than this nothing waits for the vehicle's next word of its mode."""
 
@@ -221,6 +224,8 @@ class Monitor:
         if self.mode_switch.take_moved(self.clock.now()):
             self.control.see(SwitchMoved(self.telemetry().mode or "", self.clock.now()))
         self.silence.look(elapsed_s)
+        if self._hears_us_no_more(elapsed_s):
+            self._begin_after_silence()
         self._after_silence.look()
         lost = self.silence.seconds > LINK_LOST_WALL_S
         if lost and self.connected:
@@ -234,6 +239,14 @@ class Monitor:
             outage = self.clock.now() - (self._lost_at_s or self.clock.now())
             self.announce(VehicleHeardAgain(outage))
             self.wakeup.wake()
+
+    def _hears_us_no_more(self, elapsed_s: float) -> bool:
+        """It may be heard all the same, from a radio that is stronger than ours; its failsafe acts on that alone."""
+        unanswered = self.timesync.unanswered
+        if unanswered is None:
+            return False
+        unanswered.look(elapsed_s)
+        return unanswered.seconds > UNANSWERED_WALL_S
 
     @property
     def _heartbeat_heard_again(self) -> bool:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from hardware.autopilot.link import Fields, MavlinkLink
+from hardware.autopilot.silence import Silence
 from hardware.ports import Clock
 
 EVERY_WALL_S = 0.2
@@ -38,7 +39,10 @@ class Timed(Protocol):
 
 
 class Timesync:
-    """Asks through the link; what the answers say goes to `timed`."""
+    """Asks through the link; what the answers say goes to `timed`.
+
+    unanswered: since when no answer has come; None before the first: some autopilot may never answer.
+    """
 
     def __init__(self, link: MavlinkLink, clock: Clock, timed: Timed) -> None:
         self._link = link
@@ -47,6 +51,7 @@ class Timesync:
         self._asked: dict[int, float] = {}
         self._pinged: dict[int, float] = {}
         self._unanswered = 0
+        self.unanswered: Silence | None = None
         self._rounds_s: deque[float] = deque(maxlen=_ROUNDS_KEPT)
 
     @property
@@ -89,12 +94,17 @@ class Timesync:
         boot_ns, sent_at_s = int(fields["tc1"]), self._asked.pop(int(fields["ts1"]), None)
         if boot_ns > 0 and sent_at_s is not None:
             self._unanswered = 0
-            self._rounds_s.append((time.monotonic_ns() - int(fields["ts1"])) / 1e9)
+            self._came_round((time.monotonic_ns() - int(fields["ts1"])) / 1e9)
             self._timed.exchanged(sent_at_s, boot_ns / 1e9, heard_at_s)
 
     def came_back(self, fields: Fields, heard_at_s: float) -> None:
         """A PING came: ours with its answer, or somebody else's business."""
         sent_at_s = self._pinged.pop(int(fields["time_usec"]), None)
         if sent_at_s is not None and int(fields["target_system"]) != 0:
-            self._rounds_s.append((time.monotonic_ns() // 1000 - int(fields["time_usec"])) / 1e6)
+            self._came_round((time.monotonic_ns() // 1000 - int(fields["time_usec"])) / 1e6)
             self._timed.went_round(sent_at_s, heard_at_s)
+
+    def _came_round(self, seconds: float) -> None:
+        self._rounds_s.append(seconds)
+        self.unanswered = self.unanswered or Silence()
+        self.unanswered.heard()

@@ -77,6 +77,7 @@ class Faults:
     home_m: float = 0.0
     """Above where home is taken to be, until arming sets it to where the vehicle stands: a barometer drifts."""
     link_lost_until: float = -1.0
+    uplink_lost_until: float = -1.0
     link_delay: float = 0.0
     """Seconds each way."""
     no_prearm: bool = False

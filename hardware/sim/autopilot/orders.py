@@ -5,6 +5,7 @@
     {"do": "move_switch"}                     the switch alone, as if an order had undone it in the same instant
     {"do": "give_back"}                       the mode switch back to the autopilot's holding mode
     {"do": "link_loss", "seconds": 8}         nothing passes the radio link, both ways (simulated seconds)
+    {"do": "uplink_loss", "seconds": 8}       it hears nothing of ours, and is heard all the same
     {"do": "link_delay", "seconds": 0.08}     each way, from now on (simulated seconds)
     {"do": "gps_jump", "north_m": 30, "east_m": 0, "seconds": 5}
     {"do": "gps_loss", "seconds": 10}         no satellites; after 5 s it lands by itself
@@ -99,6 +100,8 @@ class Orders:
                 return {"mode": firmware.mode}
             case "link_loss":
                 faults.link_lost_until = firmware.time + _number(order, "seconds")
+            case "uplink_loss":
+                faults.uplink_lost_until = firmware.time + _number(order, "seconds")
             case "link_delay":
                 faults.link_delay = _delay(order)
             case "gps_jump":

@@ -131,7 +131,7 @@ class Process:
     def _deliver(self) -> None:
         """A link that is lost loses what is under way, too."""
         for packet in self._up.arrived(time.monotonic()):
-            if not self._link_lost:
+            if not (self._link_lost or self._firmware.time < self._firmware.faults.uplink_lost_until):
                 for answer in self._station.receive(packet):
                     self._send(answer)
         for packet in self._down.arrived(time.monotonic()):

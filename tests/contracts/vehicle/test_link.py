@@ -45,6 +45,20 @@ async def test_a_lost_link_is_flagged_and_a_flight_survives_it(rig: Rig) -> None
     assert any(isinstance(news, VehicleHeardAgain) for news in rig.news)
 
 
+async def test_a_return_of_a_vehicle_that_is_heard_and_hears_nothing_is_the_failsafes(rig: Rig) -> None:
+    vehicle, sim = rig.vehicle, rig.sim
+    await sim.order("set_param", name="COM_DL_LOSS_T" if rig.name == "sim-px4" else "FS_GCS_TIMEOUT", value=5)
+    await rig.airborne()
+    await rig.clock.sleep(1.0 * SPEEDUP)
+    await sim.order("uplink_loss", seconds=12.0 * SPEEDUP)
+    returns = DEAD_STATION[rig.name][1]
+    await rig.until(lambda: vehicle.telemetry().mode == returns, 11.0 * SPEEDUP, "the failsafe's return")
+    telemetry = vehicle.telemetry()
+    assert telemetry.connected
+    assert telemetry.authority.who == "failsafe"
+    assert VehicleUnheard() not in rig.news
+
+
 async def test_an_acknowledged_goto_that_does_nothing_is_seen_repeated_and_at_last_an_error(rig: Rig) -> None:
     vehicle, sim = rig.vehicle, rig.sim
     await rig.airborne()

@@ -67,6 +67,20 @@ async def test_while_nothing_answers_a_ping_goes_with_each_question_and_no_longe
     assert len(wire.pings) == pings
 
 
+async def test_how_long_no_answer_has_come_is_counted_from_the_first_answer_of_either_kind() -> None:
+    timesync, wire, _ = made()
+    for _ in range(UNANSWERED + 1):
+        await timesync.ask()
+    assert timesync.unanswered is None
+    timesync.came_back(wire.pings[-1] | {"target_system": 255, "target_component": 190}, 9e9)
+    assert timesync.unanswered is not None
+    timesync.unanswered.look(0.3)
+    timesync.came_back({"time_usec": 7, "target_system": 255}, 9e9)
+    assert timesync.unanswered.seconds == 0.3
+    timesync.heard({"tc1": 42_500_000_000, "ts1": wire.sent[-1]["ts1"]}, 9e9)
+    assert timesync.unanswered.seconds == 0.0
+
+
 async def test_an_answer_to_ours_is_an_exchange_and_it_is_one_only_once() -> None:
     timesync, wire, exchanges = await asked()
     answer = {"tc1": 42_500_000_000, "ts1": wire.sent[0]["ts1"]}

@@ -35,6 +35,7 @@ def test_conditions_change_as_ordered(firmware: Px4) -> None:
     give(firmware, do="fault", kind="ignore_yaw", count=3)
     give(firmware, do="gps_jump", north_m=30, seconds=5)
     give(firmware, do="link_loss", seconds=8)
+    give(firmware, do="uplink_loss", seconds=9)
     give(firmware, do="prearm", ok=False)
 
     assert firmware.copter.battery_percent == pytest.approx(15.0)
@@ -43,6 +44,7 @@ def test_conditions_change_as_ordered(firmware: Px4) -> None:
     assert firmware.faults.ignore_yaw == 3
     assert firmware.navigation.error[0] == pytest.approx(30.0, abs=1.0)
     assert firmware.faults.link_lost_until == pytest.approx(8.0)
+    assert firmware.faults.uplink_lost_until == pytest.approx(9.0)
     firmware.time = 60.0
     assert not firmware.prearm_ok
 
