@@ -278,5 +278,5 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
         now,
         undone=undone,
         given_back=waiting and late and not undone,
-        perhaps_failsafe=before.perhaps_failsafe and (homeward or not seen.in_air),
+        perhaps_failsafe=before.perhaps_failsafe and (homeward or waiting or not seen.in_air),
     )

@@ -215,6 +215,9 @@ def test_a_doubt_about_the_failsafe_ends_with_the_first_mode_that_only_a_pilot_s
     craft = Craft()
     craft.hears(RETURN)
     assert craft.hears(LAND).perhaps_failsafe
+    craft.waits(GIVEN_BACK_S)
+    held = craft.hears(HOLD)  # PX4 goes there by itself once it knows its place again
+    assert (held.given_back, held.perhaps_failsafe) == (True, True)
     assert not craft.hears(POSCTL).perhaps_failsafe
     assert not craft.hears(RETURN).perhaps_failsafe
 

@@ -154,6 +154,7 @@ export const de: Record<MessageKey, string> = {
   "control.sticks": "Steuerknüppel",
   "control.undone": "Der Pilot steuert, aber unser Befehl hat den Schalter überstimmt: Modus noch einmal wählen",
   "control.givenBack": "Der Pilot hat zurückgegeben: Sie können fortsetzen",
+  "control.perhapsGivenBack": "Der Pilot hat zurückgegeben, oder der Ausfallschutz des Autopiloten ist zu Ende: Sie können fortsetzen",
   "control.perhapsFailsafe": "Der Pilot oder der Ausfallschutz des Autopiloten steuert ({mode})",
   "control.failsafe": "Der Ausfallschutz des Autopiloten steuert ({mode})",
   "control.nobody": "Niemand steuert",

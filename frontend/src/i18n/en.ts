@@ -109,6 +109,7 @@ export const en = {
   "control.sticks": "sticks",
   "control.undone": "The pilot has control, but our order undid the switch: select the mode again",
   "control.givenBack": "The pilot has given control back: you may resume",
+  "control.perhapsGivenBack": "The pilot has given control back, or the autopilot's failsafe has ended: you may resume",
   "control.perhapsFailsafe": "The pilot or the autopilot's failsafe has control ({mode})",
   "control.failsafe": "The autopilot's failsafe has control ({mode})",
   "control.nobody": "Nobody has control",

@@ -46,6 +46,9 @@ describe("an event in words", () => {
     expect(words(changed({ who: "pilot", taken_by: "mode", mode: "RTL", perhaps_failsafe: true }))).toBe(
       t("control.perhapsFailsafe", { mode: "RTL" }),
     );
+    expect(words(changed({ who: "pilot", taken_by: "mode", mode: "LAND", given_back: true, perhaps_failsafe: true }))).toBe(
+      t("control.perhapsGivenBack"),
+    );
     expect(words(changed({ who: "failsafe", taken_by: "mode", mode: "RTL" }))).toBe(t("control.failsafe", { mode: "RTL" }));
     expect(words(changed({ who: "ours" }, "Ada"))).toBe(t("event.control_taken_back", { by: "Ada" }));
     expect([pilot, changed({ who: "ours" }, "Ada"), changed({ who: "ours" })].map(isMain)).toEqual([true, true, false]);

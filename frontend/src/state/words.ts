@@ -57,7 +57,8 @@ export function whoFlies(who: Authority["who"], mode: string, perhapsFailsafe: b
 /** The same with what only an authority knows: an order that undid the switch, a vehicle that was given back. */
 export function authorityWords(authority: Authority, mode: string): string {
   if (authority.who === "pilot" && authority.undone) return t("control.undone");
-  if (authority.who === "pilot" && authority.given_back) return t("control.givenBack");
+  if (authority.who === "pilot" && authority.given_back)
+    return t(authority.perhaps_failsafe ? "control.perhapsGivenBack" : "control.givenBack");
   return whoFlies(authority.who, mode, authority.perhaps_failsafe);
 }
 

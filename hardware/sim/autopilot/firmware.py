@@ -152,6 +152,8 @@ class Firmware(ABC):
         self._text_id = 0 if self.name == "px4" else 1  # PX4 counts from the one that means "whole"
         self._armed_at = 0.0
         self._battery_failsafe = False
+        self._held_before = False
+        """It lands without a fix, and held before: PX4 holds again once it has one."""
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
@@ -342,7 +344,12 @@ class Firmware(ABC):
     def _watch_fix(self) -> None:
         if self.flight.in_air and self.navigation.without_fix_for > FLIES_ON_WITHOUT_FIX and self.mode != "LAND":
             self.say("Position estimate lost", mavlink.MAV_SEVERITY_EMERGENCY)
+            self._held_before = self.mode == "HOLD"
             self.set_mode("LAND")
+        elif self._held_before and self.navigation.has_fix:
+            self._held_before = False
+            if self.flight.in_air and self.mode == "LAND":
+                self.set_mode("HOLD")
 
     @abstractmethod
     def battery_low(self) -> None:

@@ -391,3 +391,5 @@ def test_without_a_fix_it_says_so_and_lands_after_a_while(flavour: type[Px4 | Ar
     assert (gps_raw_int(firmware).to_dict()["fix_type"], firmware.navigation.satellites) == (1, 0)
     run(firmware, 2.0)
     assert firmware.mode == "LAND"
+    run(firmware, 15.0)
+    assert firmware.mode == ("HOLD" if flavour is Px4 else "LAND")
