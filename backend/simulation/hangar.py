@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import secrets
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,10 @@ HOME_AMSL_M = 120.0
 @dataclass(frozen=True, slots=True)
 class Hangar:
     """Remembers the simulated vehicle in a file, so that it is found again when the server was killed: in the air or on
-    the ground, with what is left in its battery. Whoever ends the server on purpose gets a charged one."""
+    the ground, with what is left in its battery. Whoever ends the server on purpose gets a charged one.
+
+    By its token it is told from another data directory's, which may have got its ports after it had ended.
+    """
 
     settings: Settings
 
@@ -47,6 +51,7 @@ class Hangar:
                 return found
             await found.stop()
         s = self.settings
+        token = secrets.token_hex(8)
         started = await launch_simulated(
             Setting(
                 flavour=s.simulate,
@@ -55,11 +60,12 @@ class Hangar:
                 seed=s.seed,
                 wind=(3.0, 240.0, 1.0),
                 keep_running=s.simulated_flies_on,
+                token=token,
             )
         )
-        ports = {"connect_port": started.connect_port, "control_port": started.control_port}
+        found_by = {"connect_port": started.connect_port, "control_port": started.control_port, "token": token}
         self._register.parent.mkdir(parents=True, exist_ok=True)
-        self._register.write_text(json.dumps(self._key() | ports))
+        self._register.write_text(json.dumps(self._key() | found_by))
         log.info("a new simulated vehicle stands at home, its battery is full")
         return started
 
@@ -71,7 +77,7 @@ class Hangar:
     async def _left_behind(self) -> tuple[SimulatedAutopilot, bool] | None:
         try:
             kept = json.loads(self._register.read_text())
-            found = await find_simulated(int(kept["connect_port"]), int(kept["control_port"]))
+            found = await find_simulated(int(kept["connect_port"]), int(kept["control_port"]), kept.get("token"))
         except (OSError, ValueError, KeyError, TypeError):
             return None
         same = all(kept.get(name) == value for name, value in self._key().items())

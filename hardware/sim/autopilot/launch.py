@@ -30,7 +30,7 @@ class Setting:
 
     keep_running: the vehicle stays in the air when this process dies (find it again with `find_simulated`); after
     LINGER_S wall seconds without anybody it ends all the same. station_timeout_s, clock_rate: see process.Schedule.
-    link_delay_s: of the radio, each way.
+    link_delay_s: of the radio, each way. token: by which `find_simulated` tells it from others.
     """
 
     flavour: str = "px4"
@@ -48,6 +48,7 @@ class Setting:
     station_timeout_s: float = 8.0
     link_delay_s: float = 0.0
     clock_rate: float = 1.0
+    token: str = ""
 
     def arguments(self, connect_port: int) -> list[str]:
         """The command line of `python -m hardware.sim.autopilot`."""
@@ -66,6 +67,7 @@ class Setting:
             "--station-timeout", repr(self.station_timeout_s),
             "--link-delay", repr(self.link_delay_s),
             "--clock-rate", repr(self.clock_rate),
+            f"--token={self.token}",
         ]  # fmt: skip
         for name, value in self.parameters.items():
             arguments += ["--param", f"{name}={value!r}"]
@@ -158,11 +160,11 @@ async def launch_simulated(setting: Setting, timeout_s: float = 20.0) -> Simulat
     return SimulatedAutopilot(connect_port, json.loads(line)["control_port"], process)
 
 
-async def find_simulated(connect_port: int, control_port: int) -> SimulatedAutopilot | None:
-    """One that is running already (it survived its parent), or None."""
+async def find_simulated(connect_port: int, control_port: int, token: str | None = None) -> SimulatedAutopilot | None:
+    """One that is running already (it survived its parent), or None. token: it was started with; None: with any."""
     found = SimulatedAutopilot(connect_port, control_port, None)
     try:
-        await found.order("ping", timeout_s=0.5)
+        told = await found.order("ping", timeout_s=0.5)
     except (SimulatorError, OSError):
         return None
-    return found
+    return found if token is None or told.get("token") == token else None

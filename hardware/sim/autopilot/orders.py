@@ -23,7 +23,8 @@
     {"do": "reboot"}                          on the ground only
     {"do": "truth"}                           where the vehicle truly is
     {"do": "commands", "since_s": 0}          every command received (time since boot, MAV_CMD)
-    {"do": "ping"}   {"do": "stop"}
+    {"do": "ping"}                            its flavour, and the token it was started with
+    {"do": "stop"}
 
 Every answer has "ok", "time_s" (since boot, simulated) and, when not ok, "error".
 """
@@ -59,10 +60,11 @@ def _delay(order: dict[str, Any]) -> float:
 
 
 class Orders:
-    """Carries out orders on a firmware."""
+    """Carries out orders on a firmware. token: by which whoever started it knows it again."""
 
-    def __init__(self, firmware: Firmware) -> None:
+    def __init__(self, firmware: Firmware, token: str = "") -> None:
         self._firmware = firmware
+        self._token = token
         self.stop_requested = False
 
     def receive(self, line: bytes) -> bytes:
@@ -83,7 +85,7 @@ class Orders:
         firmware, faults = self._firmware, self._firmware.faults
         match order.get("do"):
             case "ping":
-                return {"flavour": firmware.name}
+                return {"flavour": firmware.name, "token": self._token}
             case "pilot_sticks":
                 velocity = tuple(_number(order, key, 0.0) for key in ("north_m_s", "east_m_s", "up_m_s"))
                 took = firmware.move_sticks((velocity[0], velocity[1], velocity[2]), _number(order, "yaw_deg_s", 0.0))

@@ -48,13 +48,16 @@ class Schedule:
 
 
 class Process:
-    """Sockets bound, not yet running. `connect`: where the ground station listens; `control_port`: for orders."""
+    """Sockets bound, not yet running. `connect`: where the ground station listens; `control_port`: for orders;
+    `token`: see Orders."""
 
-    def __init__(self, firmware: Firmware, connect: Endpoint, control_port: int, schedule: Schedule) -> None:
+    def __init__(
+        self, firmware: Firmware, connect: Endpoint, control_port: int, schedule: Schedule, token: str = ""
+    ) -> None:
         firmware.gcs_timeout_floor = schedule.station_timeout * schedule.speedup
         self._firmware = firmware
         self._station = Station(firmware)
-        self._orders = Orders(firmware)
+        self._orders = Orders(firmware, token)
         self._connect = connect
         self._peer = (socket.gethostbyname(connect.host), connect.port)
         self._speedup = schedule.speedup * schedule.clock_rate

@@ -47,3 +47,22 @@ async def test_a_register_that_cannot_be_read_is_no_vehicle(tmp_path: Path) -> N
     for content in ("", "[]", json.dumps({"connect_port": "x"})):
         (tmp_path / "simulated_vehicle.json").write_text(content)
         assert await Hangar(Settings(data_dir=tmp_path))._left_behind() is None
+
+
+async def test_a_vehicle_of_another_data_directory_is_neither_taken_over_nor_stopped(tmp_path: Path) -> None:
+    """After a restart of the machine, one may fly at the ports that another directory's register still names."""
+    theirs = Hangar(Settings(data_dir=tmp_path / "theirs"))
+    flying = await theirs.enter()
+    kept = json.loads((tmp_path / "theirs" / "simulated_vehicle.json").read_text())
+    own = Hangar(Settings(data_dir=tmp_path / "own"))
+    gone = await own.enter()
+    await gone.stop()
+    register = tmp_path / "own" / "simulated_vehicle.json"
+    ports = {name: kept[name] for name in ("connect_port", "control_port")}
+    register.write_text(json.dumps(json.loads(register.read_text()) | ports))
+    assert await own.address_left() is None
+    fresh = await own.enter()
+    assert fresh.control_port != flying.control_port
+    assert await theirs.address_left() == flying.url
+    await own.leave(fresh)
+    await theirs.leave(flying)
