@@ -10,6 +10,7 @@ from backend.events import BearingMeasured, BearingSource, CraftSource, ImportSo
 from backend.search.silences import EAST_DEG
 from hardware.direction_finding.circle import LikelihoodError, SweepLikelihood
 from hardware.frame import LocalFrame, compass_to_angle
+from planner.belief.joint import SMALLEST_SIGMA
 from planner.types import Bearing, Peak
 
 
@@ -33,8 +34,10 @@ def planner_bearing(
 
 
 def own_sigma_deg(fact: BearingMeasured) -> float:
-    """Of what differs from bearing to bearing: the shares of heading and pattern are the same for all of a source."""
-    return math.sqrt(max(fact.sigma_deg**2 - fact.heading_sigma_deg**2 - fact.pattern_sigma_deg**2, 0.0))
+    """Of what differs from bearing to bearing: the shares of heading and pattern are the same for all of a source.
+    Where they leave nothing, the smallest that a belief takes a bearing to have."""
+    own = fact.sigma_deg**2 - fact.heading_sigma_deg**2 - fact.pattern_sigma_deg**2
+    return math.sqrt(own) if own > 0.0 else math.degrees(SMALLEST_SIGMA)
 
 
 def source_name(source: BearingSource) -> str:

@@ -44,6 +44,17 @@ def turned(degrees: float, count: int = 6) -> list[BearingMeasured]:
     ]
 
 
+@pytest.mark.parametrize("heading_deg", [4.0, 5.0])
+def test_a_bearing_whose_shares_leave_nothing_of_its_own_counts_with_the_smallest_sigma(heading_deg: float) -> None:
+    """The planner knows no bearing without a sigma: the mission could not be folded any more."""
+    crossing = [towards(x, y, TARGET, sigma=4.0) for x, y in AROUND[:3]]
+    with_shares = [b.model_copy(update={"heading_sigma_deg": heading_deg}) for b in crossing]
+    with_a_degree = [b.model_copy(update={"heading_sigma_deg": math.sqrt(15.0)}) for b in crossing]
+    (nothing_left, _), (a_degree, _) = JOINT.belief_fact(with_shares), JOINT.belief_fact(with_a_degree)
+    assert nothing_left.estimate is not None
+    assert nothing_left.estimate == a_degree.estimate
+
+
 def test_a_mission_that_names_no_model_is_what_it_was() -> None:
     bare = {"name": "m", "area": AREA.model_dump(mode="json")}
     stored = MissionSpec.model_validate(bare)
