@@ -89,8 +89,11 @@ class Terrain:
         return self.heights[nearest_row[near].astype(np.int64), nearest_column[near].astype(np.int64)].astype(float)
 
     def _indices(self, lat_deg: Numbers, lon_deg: Numbers) -> tuple[Numbers, Numbers]:
-        """Row and column (n,), with fractions."""
-        return (self.north_deg - lat_deg) / self.lat_step_deg, (lon_deg - self.west_deg) / self.lon_step_deg
+        """Row and column (n,), with fractions; a longitude is the one of its turns that is nearest to the grid."""
+        east_of_west = lon_deg - self.west_deg
+        middle = self.lon_step_deg * (self.heights.shape[1] - 1) / 2
+        east_of_west = east_of_west - 360.0 * np.rint((east_of_west - middle) / 360.0)
+        return (self.north_deg - lat_deg) / self.lat_step_deg, east_of_west / self.lon_step_deg
 
     @cached_property
     def digest(self) -> str:

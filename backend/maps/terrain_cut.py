@@ -79,7 +79,8 @@ def bounds_of(source: Source) -> tuple[float, float, float, float]:
 
 
 def _meets(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
+    beside = any(one[0] < other[2] + turn and other[0] + turn < one[2] for turn in (-360.0, 0.0, 360.0))
+    return beside and one[1] < other[3] and other[1] < one[3]
 
 
 def _steps(source: Source, lat_deg: float) -> tuple[float, float]:
@@ -93,6 +94,8 @@ def _aligned(source: Source, north: float, west: float, lat_step: float, lon_ste
     """On nodes of the finest source, so that none of its summits is flattened between them."""
     if isinstance(source, Terrarium):
         return north, west
+    middle = source.west_deg + source.lon_step_deg * (source.heights.shape[1] - 1) / 2
+    west += 360.0 * round((middle - west) / 360.0)
     up = math.ceil((north - source.north_deg) / lat_step)
     left = math.ceil((source.west_deg - west) / lon_step)
     return source.north_deg + up * lat_step, source.west_deg - left * lon_step

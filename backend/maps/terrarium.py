@@ -112,15 +112,15 @@ class Terrarium:
         return (1 - v) * upper + v * lower
 
     def tile(self, zoom: int, x: int, y: int) -> Heights:
-        """(side, side); NaN where there is no such tile, or it is damaged."""
+        """(side, side); NaN where there is no such tile, or it is damaged. Beyond 180 degrees x goes on."""
         return self._tile(zoom, x, y)
 
     def _decoded(self, zoom: int, x: int, y: int) -> Heights:
         nothing = np.full((self.side, self.side), np.nan, np.float32)
-        if not (0 <= x < 2**zoom and 0 <= y < 2**zoom):
+        if not 0 <= y < 2**zoom:
             return nothing
         try:
-            content = self.archive.tile(zoom, x, y)
+            content = self.archive.tile(zoom, x % 2**zoom, y)
             found = nothing if content is None else decode(content)
         except MapRefused:
             return nothing

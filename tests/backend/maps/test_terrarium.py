@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -32,7 +33,9 @@ def slope(x: Pixels, y: Pixels) -> Pixels:
     return 200.0 + 0.5 * (x - 2130 * 256) - 0.25 * (y - 1377 * 256)
 
 
-def archive(path: Path, make=terrarium_tile, form: TileType = TileType.PNG, tiles=range(2127, 2134)) -> Path:
+def archive(
+    path: Path, make=terrarium_tile, form: TileType = TileType.PNG, tiles: Sequence[int] = range(2127, 2134)
+) -> Path:
     pixels = np.arange(256) + 0.5
     with path.open("wb") as file:
         writer = Writer(file)
@@ -112,3 +115,23 @@ def test_other_archives_are_refused(tmp_path: Path, make, form: TileType, fault:
     with pytest.raises(MapRefused) as refused:
         Terrarium(archive(tmp_path / "a.pmtiles", make, form, tiles=range(2130, 2131)), "made").check()
     assert refused.value.reason == TerrariumUnusable(fault)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("lon", [179.995, -179.995])
+def test_the_ground_goes_on_across_180_degrees(tmp_path: Path, lon: float) -> None:
+    """Where a place is told with a longitude from -180 to 180, whichever side the home is on."""
+    west = Terrain(-16.75, 179.9, 1e-4, 1e-4, np.full((1000, 1001), 300.0, np.float32), ("west",))
+    east = Terrain(-16.75, -180.0, 1e-4, 1e-4, np.full((1000, 1001), 500.0, np.float32), ("east",))
+    ground = around(Place(-16.8, lon), [west, east])
+    assert ground is not None
+    assert set(ground.sources) == {"west", "east"}
+    found = ground.at(np.full(3, -16.8), np.array([179.99, -179.99, 180.01]))
+    assert found == pytest.approx([300.0, 500.0, 500.0])
+
+
+def test_tiles_go_on_across_180_degrees(tmp_path: Path) -> None:
+    ends = [0, 2**ZOOM - 1]
+    flat = archive(tmp_path / "a.pmtiles", lambda heights: terrarium_tile(np.full_like(heights, 300.0)), tiles=ends)
+    source = Terrarium(flat, "made")
+    for lon in ([179.99, 180.0, 180.01], [-179.99, -180.0, -180.01]):
+        assert source.at(np.full(3, 50.62), np.array(lon)) == pytest.approx([300.0] * 3)
