@@ -151,6 +151,10 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
         raise RecordingError(FileUnreadable(str(path), str(error))) from error
     if first is None:
         raise RecordingError(SamplesUnusable(str(path), "none"))
+    begins = _whole(path, captures[0], sigmf.SAMPLE_START_KEY)
+    if begins >= samples.size:
+        detail = f"lies beyond its {samples.size} samples, count from the first sample of the data file"
+        raise RecordingError(FileUnreadable(str(path), f"{sigmf.SAMPLE_START_KEY}: {begins} {detail}"))
     if not np.iscomplexobj(first):
         raise RecordingError(SamplesUnusable(str(path), "real"))
     return SigmfRecording(

@@ -136,6 +136,17 @@ async def test_a_capture_beyond_the_samples_is_of_none(tmp_path: Path, beyond: i
     assert sizes == [100] * 20
 
 
+@pytest.mark.parametrize("beyond", [2000, 10**12])
+def test_captures_that_all_begin_beyond_the_samples_are_refused(tmp_path: Path, beyond: int) -> None:
+    """Counted on from an earlier file, they gave each sample a time from long before the recording."""
+    with pytest.raises(RecordingError) as refused:
+        load_sigmf(as_stated(tmp_path, capture(beyond, EARLIER), capture(beyond + 10, LATER)))
+    assert isinstance(refused.value.reason, FileUnreadable)
+    assert refused.value.reason.detail == (
+        f"core:sample_start: {beyond} lies beyond its 2000 samples, count from the first sample of the data file"
+    )
+
+
 def test_samples_before_the_first_capture_are_read_too(tmp_path: Path) -> None:
     recorded = load_sigmf(as_stated(tmp_path, capture(1000.0, EARLIER)))
     assert sum(block.samples.size for block in recorded.blocks(300)) == 2000
