@@ -115,9 +115,10 @@ class Review:
             await self.records.give(mission_id, state, Reviewed(MissionDeleted(by=by)))
 
     async def restore(self, mission_id: str, by: str) -> None:
-        """Into the list again."""
+        """Into the list again. Nothing happens to one that is there."""
         try:
-            await self._record(mission_id, MissionRestored(by=by))
+            if (await self.records.load(mission_id))[0].search.deleted:
+                await self._record(mission_id, MissionRestored(by=by))
         except JournalDamaged:
             async with self.records.lock(mission_id):
                 if (await self.records.listed(mission_id)).deleted:

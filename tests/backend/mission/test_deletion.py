@@ -48,6 +48,16 @@ async def test_a_deleted_mission_flies_once_it_is_restored(stage: Stage) -> None
     assert (await order(stage, mission_id, commands.Start())).accepted
 
 
+async def test_a_mission_that_is_in_the_list_is_restored_without_a_fact(stage: Stage) -> None:
+    mission_id = await stage.room.drafts.create(spec(), "anna")
+    await stage.room.review.restore(mission_id, "ben")
+    assert "mission_restored" not in stage.journal.kinds(mission_id)
+    await stage.room.review.delete(mission_id, "ben")
+    for _ in range(2):
+        await stage.room.review.restore(mission_id, "ben")
+    assert stage.journal.kinds(mission_id).count("mission_restored") == 1
+
+
 @pytest.mark.parametrize("quicker", ["start", "delete"])
 async def test_of_a_start_and_a_deletion_at_once_one_is_refused(stage: Stage, quicker: str) -> None:
     mission_id = await stage.room.drafts.create(spec(), "anna")
