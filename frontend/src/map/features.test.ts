@@ -35,6 +35,12 @@ it("the place of a bearing that somebody reported has their name, not a number",
   expect(of(state, "place").map((f) => f.properties?.label)).toEqual(["Ada"]);
 });
 
+it("a bearing without a sweep is drawn as of no quality, as nobody measured it", () => {
+  const told = someBearing({ sweep_id: null, quality: 1, peaks: [] });
+  expect(of(seen(told), "main", "wedge").map((f) => f.properties?.quality)).toEqual([0, 0]);
+  expect(of(seen(someBearing({ quality: 0.8 })), "main").map((f) => f.properties?.quality)).toEqual([0.8]);
+});
+
 it("two peaks of one sweep stay two hypotheses", () => {
   const state = seen(someBearing({ peaks: [{ bearing_deg: 120, weight: 0.4 }] }));
   expect([of(state, "main").length, of(state, "peak").length]).toEqual([1, 1]);
