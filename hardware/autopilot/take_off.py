@@ -19,8 +19,9 @@ MOST_SAID = 3
 HOME_SET_S = 0.25
 RISES_M, RISES_S, RISES_WALL_S = 0.5, 10.0, 2.0
 """A climb that gains less in this time has ended: a pilot who selects PX4's own HOLD stops it, and that is our mode."""
-JUMPS_M = 2.0
-"""A height that falls by more in a climb has jumped: what was gained counts from there."""
+JUMPS_M, LASTS_S = 2.0, 4.0
+"""A height that stays lower by more for this long in a climb has jumped: what was gained counts from there. A noisy one
+comes back before."""
 
 
 async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
@@ -42,14 +43,19 @@ async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
         return up is not None and up > altitude_relative_m - slack and level and settled
 
     highest_m, rises = -math.inf, Deadline(monitor.clock, RISES_S, RISES_WALL_S)
+    fell_at_s, highest_since_m = math.inf, -math.inf
 
     def ended() -> bool:
-        nonlocal highest_m, rises
-        up = snapshot.altitude_relative_m or 0.0
+        nonlocal highest_m, rises, fell_at_s, highest_since_m
+        up, now_s = snapshot.altitude_relative_m or 0.0, monitor.clock.now()
         if up > min(highest_m + RISES_M, altitude_relative_m - slack) or not monitor.connected:
             highest_m, rises = up, Deadline(monitor.clock, RISES_S, RISES_WALL_S)
-        elif up <= highest_m - JUMPS_M:
-            highest_m = up
+        if up > highest_m - JUMPS_M:
+            fell_at_s, highest_since_m = math.inf, -math.inf
+        else:
+            fell_at_s, highest_since_m = min(fell_at_s, now_s), max(highest_since_m, up)
+        if now_s - fell_at_s > LASTS_S:
+            highest_m, fell_at_s, highest_since_m = highest_since_m, math.inf, -math.inf
         return climbed() or snapshot.disarmed or rises.passed
 
     await guidance.until(manoeuvre, Deadline(monitor.clock, 30.0 + altitude_relative_m / 0.5), ended)

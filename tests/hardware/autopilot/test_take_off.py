@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import random
 from collections.abc import Callable
 
 import pytest
@@ -74,6 +75,30 @@ async def test_a_climb_that_stops_wavers_and_has_ended(flying: Scene, monkeypatc
     with pytest.raises(VehicleError, match=r"climbed to 1\d\.\d m only"):
         await climbs(flying, lambda s: min(s, 10.5 + 0.4 * (round(s) % 2)), monkeypatch)
     assert flying.clock.at - began_s == pytest.approx(10.5 + 10.0, abs=1.5), "ten seconds after it stopped"
+
+
+@pytest.mark.parametrize(
+    "noise_m",
+    [
+        lambda s: 1.5 * (-1) ** round(2 * s),
+        lambda s: 1.5 * math.sin(2.0 * math.pi * s / 8.0),
+        lambda s: random.Random(round(1e3 * s)).gauss(0.0, 0.8),
+    ],
+    ids=["alternating", "wandering", "random"],
+)
+async def test_a_climb_that_stops_has_ended_though_its_height_is_noisy(
+    flying: Scene, monkeypatch: pytest.MonkeyPatch, noise_m: Callable[[float], float]
+) -> None:
+    """Each swing back up was taken for a gain after a jump, and it was waited for until the end of the whole climb."""
+    began_s = flying.clock.at
+    with pytest.raises(VehicleError, match=r"climbed to \d+\.\d m only"):
+        await climbs(flying, lambda s: min(s, 20.0) + noise_m(s), monkeypatch)
+    assert flying.clock.at - began_s < 20.0 + 25.0, "of the 110 s that the whole climb may take"
+
+
+async def test_a_climb_with_a_noisy_height_goes_on(flying: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    took_s = await climbs(flying, lambda s: min(CLIMBS_M_S * s + 1.5 * (-1) ** round(2 * s), TARGET_M), monkeypatch)
+    assert took_s == pytest.approx(TARGET_M / CLIMBS_M_S, abs=3.0)
 
 
 async def test_a_climb_that_becomes_a_slow_descent_has_ended(flying: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
