@@ -144,6 +144,11 @@ class Dialect:
     return_altitudes: tuple[tuple[str, float], ...]
     return_climbs: tuple[tuple[str, float], ...]
 
+    @property
+    def station_time(self) -> str:
+        """The parameter that says for how long a station is silent before the autopilot acts on that."""
+        return next(rule.parameter for rule in self.failsafes if rule.watch == "station_time")
+
     def mode_name(self, custom_mode: int) -> str:
         """As pilots know it; "mode N" for one that this dialect does not name."""
         return self.mode_names.get(custom_mode, f"mode {custom_mode}")

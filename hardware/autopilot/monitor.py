@@ -15,7 +15,7 @@ from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.boot_clock import LastingOddity
 from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
-from hardware.autopilot.dialect import Dialect
+from hardware.autopilot.dialect import STATION_NOTICED_LOST_S, Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.messages import (
     HEARTBEAT_ID,
@@ -70,11 +70,12 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (147, 1.0),  # BATTERY_STATUS
     (HOME_POSITION_ID, 0.5),
 )
-MODE_SWITCH_HZ, SWITCH_ATTEMPTS = 5.0, 3
+MODE_SWITCH_HZ, READ_ATTEMPTS = 5.0, 3
 LINK_LOST_WALL_S = 3.0
-UNANSWERED_WALL_S = 1.0
-"""Longer without an answer to our five questions a second, it may not hear us, and may act on that: preflight wants two
-seconds of an autopilot's patience at least, and what it heard last may have been sent a second ago."""
+UNANSWERED_FROM, UNANSWERED_TO = 0.5, 2.0
+"""Shares of the autopilot's patience with a silent station: so long without an answer to our five questions a second,
+it may act on hearing nothing. It counts from the last heartbeat, of one a second, so that some of its patience may be
+gone with the last answer. A link that only loses much leaves no such gap; what has not answered for longer hears us."""
 MODE_S = 0.2
 """Longer than this nothing waits for the vehicle's next word of its mode."""
 
@@ -109,6 +110,8 @@ class Monitor:
         )
         self.silence = Silence()
         self.mode_switch = ModeSwitch()
+        self.patience_s: float | None = None
+        """How long a station is silent before the autopilot acts, by its own parameter; None: not read yet."""
         self._after_silence = AfterSilence(clock)
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
@@ -182,6 +185,7 @@ class Monitor:
         """Make sure of the telemetry rates; ask for them again when the autopilot has forgotten them."""
         await self._request_streams()
         await self._find_mode_switch()
+        self.patience_s = await self._read(self.dialect.station_time) or self.patience_s
         reboots, oddity = self.snapshot.reboots, LastingOddity()
         while True:
             await asyncio.sleep(1.0)
@@ -201,14 +205,17 @@ class Monitor:
             await self._request_streams()
 
     async def _find_mode_switch(self) -> None:
-        """Which of the transmitter's channels selects modes; asked again of a link that loses much."""
-        number = None
-        for _ in range(SWITCH_ATTEMPTS):
-            if (number := await self.link.parameter(self.dialect.mode_switch)) is not None:
-                break
-        if number:
+        """Which of the transmitter's channels selects modes."""
+        if number := await self._read(self.dialect.mode_switch):
             self.mode_switch.channel = int(number)
             await self.commander.ask(message_interval(RC_CHANNELS_ID, MODE_SWITCH_HZ))
+
+    async def _read(self, parameter: str) -> float | None:
+        """Asked again of a link that loses much."""
+        for _ in range(READ_ATTEMPTS):
+            if (value := await self.link.parameter(parameter)) is not None:
+                return value
+        return None
 
     async def _watch_link(self) -> None:
         looked = time.monotonic()
@@ -246,7 +253,8 @@ class Monitor:
         if unanswered is None:
             return False
         unanswered.look(elapsed_s)
-        return unanswered.seconds > UNANSWERED_WALL_S
+        least_s, most_s = STATION_NOTICED_LOST_S if self.patience_s is None else (self.patience_s, self.patience_s)
+        return UNANSWERED_FROM * least_s < unanswered.seconds < UNANSWERED_TO * most_s
 
     @property
     def _heartbeat_heard_again(self) -> bool:

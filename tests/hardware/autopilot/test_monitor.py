@@ -12,6 +12,7 @@ from hardware.autopilot import monitor
 from hardware.autopilot.messages import HEARTBEAT_ID, SET_MESSAGE_INTERVAL
 from hardware.autopilot.monitor import AFTER_SILENCE_S, LINK_LOST_WALL_S, STREAMS
 from hardware.autopilot.px4 import HOLD, LANDING, RETURNING
+from hardware.autopilot.silence import Silence
 
 
 @pytest.fixture
@@ -141,6 +142,36 @@ async def test_a_vehicle_that_was_listened_to_for_long_enough_returns_for_its_pi
     holding.monitor.control.see(CommandSent(frozenset({HOLD})))
     holding.mode(RETURNING)
     assert holding.monitor.telemetry().authority.who == "pilot"
+
+
+@pytest.mark.parametrize(
+    ("patience_s", "unanswered_s", "who"),
+    [
+        (None, 0.8, "pilot"),
+        (None, 1.5, "failsafe"),
+        (5.0, 2.3, "pilot"),
+        (5.0, 4.0, "failsafe"),
+        (10.0, 4.8, "pilot"),
+        (10.0, 17.0, "failsafe"),
+        (10.0, 60.0, "pilot"),
+    ],
+)
+async def test_a_vehicle_that_is_heard_acts_on_hearing_nothing_when_its_patience_may_be_gone_and_not_long_after(
+    patience_s: float | None, unanswered_s: float, who: str, holding: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A link that loses much leaves gaps of a second, too, and a pilot's return would be taken from them."""
+    now_s = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    holding.monitor.patience_s = patience_s
+    holding.monitor.timesync.unanswered = Silence()
+    for _ in range(round(unanswered_s / 0.1)):
+        now_s += 0.1
+        holding.clock.at += 0.1
+        holding.mode(HOLD)
+        holding.monitor.look_at_link(0.1)
+    holding.mode(RETURNING)
+    authority = holding.monitor.telemetry().authority
+    assert (authority.who, authority.perhaps_failsafe) == (who, who == "pilot")
 
 
 async def test_the_autopilots_report_of_the_sticks_is_a_takeover_before_its_mode_shows_one(holding: Scene) -> None:

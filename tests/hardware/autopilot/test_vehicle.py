@@ -136,6 +136,15 @@ async def test_unsafe_failsafes_are_mended_on_wish_and_then_pass(rig: Rig) -> No
     assert await rig.vehicle.mend_failsafes() == []
 
 
+async def test_its_patience_with_a_silent_station_is_known_by_itself_and_with_each_preflight(rig: Rig) -> None:
+    monitor = rig.vehicle._monitor
+    await rig.until(lambda: monitor.patience_s is not None)
+    assert monitor.patience_s == (10.0 if rig.vehicle.telemetry().autopilot == "px4" else 5.0)
+    await rig.sim.order("set_param", name=monitor.dialect.station_time, value=7)
+    await rig.vehicle.preflight()
+    assert monitor.patience_s == 7.0
+
+
 async def test_a_rebooted_autopilot_is_asked_for_its_telemetry_again(rig: Rig) -> None:
     await rig.clock.sleep(10.0)
     await rig.sim.order("reboot")
