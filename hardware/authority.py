@@ -265,7 +265,7 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
         return _taken(now, "pilot", "mode", seen.at_s, seen)  # armed again by hand
     waiting, homeward = seen.kind == "waiting", seen.kind in HOMEWARD
     if before.who == "failsafe":
-        if not seen.in_air or seen.mode == before.heard:
+        if not seen.in_air or (waiting and seen.mode == before.heard and not seen.after_silence):
             return now
         if homeward or (waiting and seen.after_silence):
             # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command

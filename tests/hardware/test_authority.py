@@ -252,6 +252,13 @@ def test_a_failsafes_landing_that_a_pilot_took_over_is_the_pilots() -> None:
     assert not craft.on_ground(HOLD).failsafe_landed
 
 
+def test_who_lifts_off_again_in_a_mode_chosen_on_the_ground_before_it_disarmed_is_a_pilot() -> None:
+    craft = failsafe_flying()
+    craft.hears(LAND)
+    assert craft.on_ground(POSCTL, armed=True).who == "failsafe"
+    assert craft.hears(POSCTL).who == "pilot"
+
+
 def test_an_operator_who_takes_control_forgets_that_the_failsafe_landed_it() -> None:
     craft = failsafe_flying()
     craft.on_ground(HOLD)
