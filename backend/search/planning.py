@@ -165,7 +165,8 @@ def turned_at(task: Localization, measured: Sequence[BearingMeasured]) -> tuple[
 
 def foreseen_for(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
     """As `foreseen_to_plan`. What turns took that were made for more emitters says nothing of those to come."""
-    looks = SWUNG_LOOKS if task.mission.sensor.swing_on_the_way else 1
+    sensor = task.mission.sensor
+    looks = SWUNG_LOOKS if sensor.listen_on_the_way and sensor.swing_on_the_way else 1
     found = foreseen_to_plan(task.problem, measured, belief, looks)
     return replace(found, measurement_time=task.problem.measurement_time) if task.fewer_turned_for else found
 

@@ -201,6 +201,8 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
         turn, place = (foreseen_for(one, measured, belief).sigma for one in (JOINT, swinging))
         assert turn / math.sqrt(2.0) < place < turn
         assert foreseen(swinging.problem, measured, belief).sigma == turn
+    unheard = task(bearing_errors="joint", listen_on_the_way=False, swing_on_the_way=True)
+    assert foreseen_for(unheard, seen, belief).sigma == turn
     assert isinstance(belief, JointBelief)
     (errors,) = belief.errors
     own = [math.sqrt(sigma**2 - errors.bias_sd**2) for sigma in (turn, place)]
