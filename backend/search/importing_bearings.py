@@ -84,8 +84,9 @@ def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:
 
 
 def _sources(upload: Upload, bearings: Sequence[RecordedBearing]) -> list[BearingSource]:
-    """Of a log of several stations each of them, by the name under which it reports live: each has a compass."""
-    if len({one.tag for one in bearings if one.tag}) > 1:
+    """Of a log of several stations each of them, by the name under which it reports live: each has a compass. bearings:
+    of one emitter, which may be those of one of the stations."""
+    if len({one.tag for one in upload.recording.bearings if one.tag}) > 1:
         return [PersonSource(name=str(one.tag)) for one in bearings]
     return [ImportSource(recording_id=upload.recording_id)] * len(bearings)
 

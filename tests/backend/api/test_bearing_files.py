@@ -78,6 +78,23 @@ async def test_each_station_of_a_krakens_log_is_a_source_of_its_own(client, serv
     assert (await client.post(f"/api/missions/{mission_id}/commands", json=muted)).json()["accepted"]
 
 
+async def test_a_station_is_itself_for_an_emitter_that_no_other_station_of_the_log_heard(client, services):
+    """Its compass had one error for the emitter that both heard, and another for the one that it heard alone."""
+    emitters = [
+        {"emitter_id": "fox", "frequency_hz": 868_300_000.0},
+        {"emitter_id": "tag", "frequency_hz": 868_900_000.0},
+    ]
+    mission_id = await draft(client, emitters=emitters)
+    alone = kraken(868_900_000.0)
+    log = "\n".join([kraken(), kraken().replace("roof", "van"), alone])
+    sources = {}
+    for one in ("fox", "tag"):
+        assert (await bring(client, mission_id, log, emitter_id=one)).status_code == 201
+        taken = [fact for fact in await facts(services, mission_id, "bearing_measured") if fact.emitter_id == one]
+        sources[one] = {getattr(fact.source, "name", "") for fact in taken}
+    assert sources == {"fox": {"roof", "van"}, "tag": {"roof"}}
+
+
 async def test_a_file_is_called_what_can_be_shown_of_its_name(client, services):
     mission_id = await draft(client)
     files = {"files": ("../roof\u202evsc.csv", kraken(), "text/csv")}
