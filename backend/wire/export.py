@@ -28,7 +28,7 @@ from backend.search.emitter import EmitterState
 from backend.search.state import SearchState
 from backend.spec import MissionSpec
 from backend.version import VERSION
-from backend.wire.export_facts import altitude_amsl_m, folded, mission_name, ray_lengths_m, xml_words
+from backend.wire.export_facts import altitude_amsl_m, folded, mission_name, ray_lengths_m, taken_utc, xml_words
 from backend.wire.export_geometry import area_geometry, path_geometry
 
 Tracks = Mapping[str, Sequence[TrackPoint]]
@@ -76,8 +76,7 @@ def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
             craft_id = event.source.craft_id if isinstance(event.source, CraftSource) else None
             altitude_m, home_m = altitude_amsl_m(event), homes_amsl_m.get(craft_id)
             above_m = None if altitude_m is None or home_m is None else altitude_m - home_m
-            told_s = record.at_utc.timestamp()
-            end_s = told_s if craft_id is not None or event.taken_at_s is None else event.taken_at_s
+            end_s = taken_utc(record, event).timestamp()
             start_s = began_s.get(craft_id, end_s)
             writer.writerow(
                 [
@@ -157,7 +156,7 @@ def _features(recorded: Sequence[Recorded], tracks: Tracks) -> Iterator[Feature]
             times = {"from_utc": _time(flown[0].at_s), "to_utc": _time(flown[-1].at_s)}
             path = path_geometry([[p.lon_deg, p.lat_deg] for p in flown])
             yield path, {"what": "track", "name": "flown path", "craft": craft_id, **times}
-    times_utc = {r.event.bearing_id: r.at_utc for r in recorded if isinstance(r.event, BearingMeasured)}
+    times_utc = {e.bearing_id: taken_utc(r, e) for r in recorded if isinstance(e := r.event, BearingMeasured)}
     for emitter in state.emitters.values():
         yield from emitter_features(state, emitter, times_utc)
 
@@ -170,7 +169,7 @@ def area_features(spec: MissionSpec, name: str) -> Iterator[Feature]:
 
 
 def emitter_features(state: SearchState, emitter: EmitterState, times_utc: Mapping[str, datetime]) -> Iterator[Feature]:
-    """What is known of one emitter. times_utc: by the id of each of its bearings."""
+    """What is known of one emitter. times_utc: by the id of each of its bearings, when it was taken."""
     belief = emitter.belief
     estimate = None if belief is None else belief.measured_estimate
     sought = state.mission.emitter(emitter.emitter_id)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from datetime import UTC, datetime
 
 import numpy as np
 import pymap3d.vincenty
@@ -19,6 +20,7 @@ from backend.events import (
     Recorded,
 )
 from backend.search.state import SearchState, evolve
+from hardware.direction_finding.bearings_file import LATEST_S
 
 RAY_M = 500.0
 """Length of a bearing line when there is no estimate to reach."""
@@ -46,6 +48,12 @@ def mission_name(recorded: Sequence[Recorded]) -> str:
             case _:
                 pass
     return name
+
+
+def taken_utc(record: Recorded, fact: BearingMeasured) -> datetime:
+    """When it was there; of one that no craft of the mission took, when it was taken, if somebody said when."""
+    told_s = None if isinstance(fact.source, CraftSource) else fact.taken_at_s
+    return datetime.fromtimestamp(told_s, UTC) if told_s is not None and 0.0 < told_s < LATEST_S else record.at_utc
 
 
 def altitude_amsl_m(fact: BearingMeasured) -> float | None:

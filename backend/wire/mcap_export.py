@@ -22,7 +22,7 @@ from backend.events import BearingMeasured, BeliefUpdated, EstimateFact, Recorde
 from backend.search.state import SearchState, evolve
 from backend.version import VERSION
 from backend.wire.export import Tracks, area_features, collection, emitter_features
-from backend.wire.export_facts import mission_name
+from backend.wire.export_facts import mission_name, taken_utc
 
 NUMBER, TEXT = {"type": "number"}, {"type": "string"}
 STAMP = {"type": "object", "title": "time", "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}}
@@ -108,7 +108,7 @@ def _events(recorded: Sequence[Recorded]) -> Iterator[Message]:
         state = evolve(state, event, record.at_utc.timestamp())
         yield at_ns, "/mission/events", "", record.model_dump(mode="json")
         if isinstance(event, BearingMeasured):
-            times_utc[event.bearing_id] = record.at_utc
+            times_utc[event.bearing_id] = taken_utc(record, event)
         elif isinstance(event, BeliefUpdated):
             found = emitter_features(state, state.emitters[event.emitter_id], times_utc)
             shown = [*area_features(state.mission, name), *found]

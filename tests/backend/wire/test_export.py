@@ -142,6 +142,16 @@ def test_a_bearing_without_a_sweep_has_no_quality_and_the_time_at_which_it_was_t
     remarks = [told.text or "" for event in cot_events(recorded) for told in event.iter("remarks")]
     assert ["quality" in remark for remark in remarks] == [False, True]
     assert rows(recorded)[0][8:] == ["1700000000.000000"] * 2
+    assert [told["at_utc"] for told in drawn] == ["2023-11-14T22:13:20+00:00", recorded[2].at_utc.isoformat()]
+
+
+@pytest.mark.parametrize("at_s", [-1.0, 0.0, 1e300])
+def test_a_time_that_cannot_be_is_not_exported(at_s: float) -> None:
+    """A bundle of another's making may say it."""
+    recorded = numbered([mission(FOX)[0], by(PersonSource(name="Ada")).model_copy(update={"taken_at_s": at_s})])
+    (told,) = (one["properties"] for one in features(recorded) if one["properties"]["what"] == "bearing")
+    assert told["at_utc"] == recorded[1].at_utc.isoformat()
+    assert float(rows(recorded)[0][9]) == recorded[1].at_utc.timestamp()
 
 
 @pytest.mark.parametrize("sweep_id", ['=HYPERLINK("http://x")', "+1", "-1", "@SUM(A1)", "\t=1"])
