@@ -82,8 +82,8 @@ function Found({ found }: { found: RecordingImport }) {
             <strong>{t("sweep.place", { number: sweep.place_number })}</strong>{" "}
             {sweep.bearing_deg !== null &&
               sweep.sigma_deg !== null &&
-              `${t("sweep.bearing", { bearing: formatBearing(sweep.bearing_deg), sigma: formatNumber(sweep.sigma_deg, 1) })}, `}
-            {t("sweep.quality", { quality: formatNumber(sweep.quality, 2) })}
+              `${t("sweep.bearing", { bearing: formatBearing(sweep.bearing_deg), sigma: formatNumber(sweep.sigma_deg, 1) })}${sweep.sweep_id && ", "}`}
+            {sweep.sweep_id && t("sweep.quality", { quality: formatNumber(sweep.quality, 2) })}
             {sweep.reason && `. ${t("sweep.rejected", { reason: reasonText(sweep.reason) })}`}
           </li>
         ))}
