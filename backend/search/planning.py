@@ -40,7 +40,8 @@ SPECIFIED_COUNTS = 4
 says nothing of the next (167 of the field world: r = -0.1 and 0.1); what a craft's sigmas have in common differs from
 the specification by 1.35 (ln: 0.3): 0.6^2 / 0.3^2."""
 SWUNG_LOOKS = 2
-"""What a place tells where the nose swings on the way to it, in turns: the leg says as much as one (decision 61)."""
+"""What a place tells where the nose swings on the way to it, in turns: the leg says as much as one of a carrier
+(decision 61). Of pulses a leg hears as few as its time holds, where a turn waits for enough of them."""
 
 MEASURING_S, WORN_FROM_M = 30.0, 60.0
 """Of a moving emitter's search: how long a turn usually takes, and how far off bearings are taken."""
@@ -165,8 +166,8 @@ def turned_at(task: Localization, measured: Sequence[BearingMeasured]) -> tuple[
 
 def foreseen_for(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
     """As `foreseen_to_plan`. What turns took that were made for more emitters says nothing of those to come."""
-    sensor = task.mission.sensor
-    looks = SWUNG_LOOKS if sensor.listen_on_the_way and sensor.swing_on_the_way else 1
+    sensor, carrier = task.mission.sensor, task.mission.emitter(task.emitter_id).kind == "carrier"
+    looks = SWUNG_LOOKS if carrier and sensor.listen_on_the_way and sensor.swing_on_the_way else 1
     found = foreseen_to_plan(task.problem, measured, belief, looks)
     return replace(found, measurement_time=task.problem.measurement_time) if task.fewer_turned_for else found
 

@@ -203,6 +203,9 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
         assert foreseen(swinging.problem, measured, belief).sigma == turn
     unheard = task(bearing_errors="joint", listen_on_the_way=False, swing_on_the_way=True)
     assert foreseen_for(unheard, seen, belief).sigma == turn
+    tag = swinging.mission.emitters[0].model_copy(update={"kind": "pulsed"})
+    pulsed = localization(swinging.mission.model_copy(update={"emitters": [tag]}), HOME)
+    assert foreseen_for(pulsed, seen, belief).sigma == turn
     assert isinstance(belief, JointBelief)
     (errors,) = belief.errors
     own = [math.sqrt(sigma**2 - errors.bias_sd**2) for sigma in (turn, place)]
