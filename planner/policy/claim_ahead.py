@@ -6,12 +6,12 @@ away. To rollouts any bearing will do then, and they choose the nearest place, w
 drawn from the belief, place and bias together, and the belief after it is judged as the verdict will judge it
 (planner.kernels.claim), so that a place on the other side of the estimate counts for what it tells of the bias:
 
-    value(a) = t(a) + (1 - P(a)) t_failed,    t_failed = mean t / LATER_CHANCE
+    value(a) = t(a) + (1 - P(a)) mean t / P'(a),    P'(a) = P* + (LATER_CHANCE - P*) P(a) / P*
 
-with P(a) the chance of a claim after the bearing from a. A bearing that fails has told something all the same: those
-after it make a claim as often as LATER_CHANCE, whatever P was. Where hardly any bearing makes a claim, P(a) is what the
-bearing does towards one: of the logarithm by which the mass too far away is still too large, the share that it takes
-off in the mean, and LATER_CHANCE gives way to the best place's P mean t / t.
+with P(a) the chance of a claim after the bearing from a, P* the largest, and P'(a) that of each bearing after one from
+a that failed: one that might have made a claim has told something all the same, one that hardly could has told nothing.
+Where hardly any bearing makes a claim, P(a) is what the bearing does towards one: of the logarithm by which the mass
+too far away is still too large, the share that it takes off in the mean, and P' is the best place's P mean t / t.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ LEAST_CHANCE = 0.2
 """Of a claim after the best place's bearing; below, more than one bearing has to be planned. Rollouts, which would end
 with any of them, plan those only as long as the expected error is what is missing."""
 LATER_CHANCE = 0.75
-"""Of a claim after each further bearing, where one made none that might have: in 242 decisions of the field world 54
+"""Of a claim after each further bearing, where the likeliest place made none: in 242 decisions of the field world 54
 failed, and 1.3 more followed."""
 LEAST_SHARE = 1e-3
 """Of the way to a claim that a bearing is taken to cover."""
@@ -63,28 +63,34 @@ FORECAST_TIMES = 128
 class ClaimAhead:
     """Of the most telling places (n, 2), m. costs: (n,) s, of flying there and measuring. chance: (n,) that a claim
     follows, or the share of the way to one; chance_from: the same of any places (k, 2), by the same draws.
-    later: the chance of each bearing that follows one without a claim."""
+    all_later: the chance of all later bearings, where those of the places are shares."""
 
     places: FloatArray
     costs: FloatArray
     chance: FloatArray
     chance_from: Callable[[FloatArray], FloatArray]
-    later: float = LATER_CHANCE
+    all_later: float | None = None
 
     @property
     def again(self) -> float:
         """s, of one bearing more."""
         return float(self.costs.mean())
 
-    @property
-    def failed(self) -> float:
-        """s, after a bearing that led to no claim: 1 / later bearings more."""
-        return self.again / self.later
+    def later(self, chance: FloatArray) -> FloatArray:
+        """Of each bearing after one that had these chances (n,) and led to no claim; P' above."""
+        if self.all_later is not None:
+            return np.full(np.shape(chance), self.all_later)
+        most = max(float(self.chance.max()), LEAST_SHARE)
+        return most + (LATER_CHANCE - most) * np.minimum(chance / most, 1.0)
+
+    def failed(self, chance: FloatArray) -> FloatArray:
+        """(n,) s, after a bearing with these chances that led to no claim: 1 / P' bearings more."""
+        return self.again / self.later(chance)
 
     @property
     def values(self) -> FloatArray:
         """(n,) s."""
-        return self.costs + (1.0 - self.chance) * self.failed
+        return self.costs + (1.0 - self.chance) * self.failed(self.chance)
 
     @property
     def best(self) -> int:
@@ -94,20 +100,21 @@ class ClaimAhead:
     def times(self, cost: float, chance: float, paths: int) -> FloatArray:
         """(paths,) s until a claim by way of a place with this cost (s) and chance, the same paths for every place.
 
-        Path u in (0, 1) claims at once where u < chance; of the others each further bearing leaves 1 - later:
+        Path u in (0, 1) claims at once where u < chance; of the others each further bearing leaves 1 - P':
 
-            t + t_again (1 + floor(ln((1 - u) / (1 - P)) / ln(1 - later))),    mean t + (1 - P) t_failed
+            t + t_again (1 + floor(ln((1 - u) / (1 - P)) / ln(1 - P'))),    mean t + (1 - P) t_again / P'
         """
         share = (0.5 + np.arange(paths)) / paths
         left = np.clip((1.0 - share) / max(1.0 - chance, 1e-9), 1e-9, 1.0)
-        further = 1.0 + np.floor(np.log(left) / np.log(max(1.0 - self.later, 1e-9)))
+        failing = max(1.0 - float(self.later(np.array([chance]))[0]), 1e-9)
+        further = 1.0 + np.floor(np.log(left) / np.log(failing))
         return cost + self.again * np.where(share < chance, 0.0, further)
 
     def std_errors(self, chance: FloatArray) -> FloatArray:
         """(n,) s, of the values of places with these chances; with half a bearing more that claims and half one that
         does not (Jeffreys), so that none of 32 is not certain."""
         share = (BEARINGS_DRAWN * chance + 0.5) / (BEARINGS_DRAWN + 1.0)
-        return np.asarray(self.failed * np.sqrt(share * (1.0 - share) / BEARINGS_DRAWN))
+        return np.asarray(self.failed(chance) * np.sqrt(share * (1.0 - share) / BEARINGS_DRAWN))
 
 
 def claim_ahead(

@@ -27,6 +27,7 @@ from backend.events import BearingMeasured
 from backend.search.localization import Localization
 from planner.belief.grid import GridBelief
 from planner.on_the_way import Stretch
+from planner.types import FloatArray
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Figure
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
@@ -56,7 +57,7 @@ class Watched(FieldStudy):
         here: tuple[float, float],
         rng: np.random.Generator,
         avoid: Sequence[tuple[float, float]] = (),
-    ) -> tuple[float, float]:
+    ) -> tuple[tuple[float, float], FloatArray]:
         self.known.append((tuple(measured), task.stretches))
         return FieldStudy._choose(self, task, belief, measured, here, rng, avoid)
 

@@ -105,20 +105,31 @@ def test_the_choice_is_the_least_value_and_its_times_have_that_mean():
     best = int(np.argmin(ahead.values))
     assert (decision.x, decision.y) == tuple(ahead.places[best])
     chance = ahead.chance[best]
-    whole = ahead.costs[best] + ahead.again * (1.0 - chance) / LATER_CHANCE
+    whole = ahead.costs[best] + ahead.again * (1.0 - chance) / ahead.later(chance)
     assert decision.times.mean() == pytest.approx(whole, rel=0.03)
     assert {(c.x, c.y) for c in decision.candidates} <= {(x, y) for x, y in places.tolist()}
 
 
-@pytest.mark.parametrize("chance", [0.0, 0.3, 0.7, 1.0])
-def test_a_bearing_that_fails_costs_a_few_more_whatever_its_chance_was(chance):
+def by_hand(*costs_and_chances):
+    costs, chances = np.array(costs_and_chances).T
+    return ClaimAhead(np.zeros((len(costs), 2)), costs, chances, lambda some: some[:, 0])
+
+
+@pytest.mark.parametrize("chance", [0.0, 0.2, 0.4, 0.8])
+def test_a_bearing_that_fails_is_followed_by_the_more_the_less_it_told(chance):
     """1 / P as many, as once reckoned, foretold 127 s where 64 followed."""
-    ahead = ClaimAhead(np.zeros((2, 2)), np.array([30.0, 50.0]), np.array([chance, 0.0]), lambda some: some[:, 0])
+    ahead = by_hand((30.0, chance), (50.0, 0.8))
+    later = 0.8 + (LATER_CHANCE - 0.8) * chance / 0.8
     times = ahead.times(30.0, chance, 4096)
-    assert times.mean() == pytest.approx(30.0 + (1.0 - chance) * 40.0 / LATER_CHANCE, rel=1e-3)
+    assert times.mean() == pytest.approx(30.0 + (1.0 - chance) * 40.0 / later, rel=1e-3)
+    assert times.mean() == pytest.approx(ahead.values[0], rel=1e-3)
     assert np.mean(times == 30.0) == pytest.approx(chance, abs=1e-3)
-    better = ahead.times(30.0, min(chance + 0.1, 1.0), 4096)
-    assert (better <= times).all()
+    assert (ahead.times(30.0, chance + 0.1, 4096) <= times).all()
+
+
+def test_a_near_place_that_tells_nothing_is_not_chosen():
+    ahead = by_hand((16.0, 0.03), (30.0, 0.4), (28.0, 0.35), (26.0, 0.1))
+    assert ahead.best == 1
 
 
 def test_an_operators_place_is_judged_as_the_planners_places_are():
