@@ -25,7 +25,7 @@ Vetoes = Callable[[Place, Sequence[tuple[float, float]]], tuple[Reason, ...]]
 class Forecast:
     """reason: why the vehicle may not go there now (the times may still be known), None when it may.
 
-    mean_s: mean time until localized by way of the place; p90_s: not exceeded in at least 90 % of the rollouts and
+    mean_s: mean time until localized by way of the place; p90_s: not exceeded by nine of ten searches, and
     never below the mean. None: unknown.
     """
 

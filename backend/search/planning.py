@@ -43,6 +43,10 @@ SWUNG_LOOKS = 2
 """What a place tells where the nose swings on the way to it, in turns: the leg says as much as one of a carrier
 (decision 61). Of pulses a leg hears as few as its time holds, where a turn waits for enough of them."""
 
+NOT_SIMULATED = 1.25
+"""Of 4,905 plans of the field world after the first bearing 82 % kept the simulated times' 90 % quantile, 90 % this
+many times as much."""
+
 MEASURING_S, WORN_FROM_M = 30.0, 60.0
 """Of a moving emitter's search: how long a turn usually takes, and how far off bearings are taken."""
 
@@ -339,11 +343,12 @@ def cost_of(
 
 
 def in_nine_of_ten(times: FloatArray) -> float | None:
-    """Time (s) not exceeded in at least 90 % of the sampled times (n,), None without any.
+    """Time (s) that nine of ten searches with these simulated times (n,) do not exceed, None without any.
 
-    A few lost searches can carry the mean beyond the 90 % quantile; then it is the mean, which holds for even more.
+    Simulated flights know of no echo and of no sweep that is taken again: t_90 = NOT_SIMULATED x their 90 % quantile.
+    A few lost searches can carry the mean beyond it; then it is the mean, which holds for even more.
     """
-    return float(max(np.quantile(times, 0.9), times.mean())) if len(times) else None
+    return float(max(NOT_SIMULATED * np.quantile(times, 0.9), times.mean())) if len(times) else None
 
 
 def _finite(value: float) -> float | None:

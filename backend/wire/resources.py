@@ -230,7 +230,7 @@ class PlacesCompared(Model):
 class ExpectedTime(Model):
     """allowed False: the vehicle may not go there, `reason` says why (the times may still be known).
 
-    expected_time_s: mean time until localized by way of the place; time_90_s: not exceeded in 90 % of the rollouts.
+    expected_time_s: mean time until localized by way of the place; time_90_s: not exceeded by nine of ten searches.
     """
 
     place: Place

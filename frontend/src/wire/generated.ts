@@ -3399,7 +3399,7 @@ export interface components {
         /**
          * @description allowed False: the vehicle may not go there, `reason` says why (the times may still be known).
          *
-         *     expected_time_s: mean time until localized by way of the place; time_90_s: not exceeded in 90 % of the rollouts.
+         *     expected_time_s: mean time until localized by way of the place; time_90_s: not exceeded by nine of ten searches.
          */
         ExpectedTime: {
             place: components["schemas"]["Place"];
@@ -6894,7 +6894,7 @@ export interface components {
          *     `emitter_id`: the emitter it is to tell most of, None of an operator's and of one for several emitters; then a
          *     candidate's `value_s` is the mean of their times, and `expected_time_s` that of the last if each were flown for by
          *     itself from there on: it takes no less. `place_number` counts places from 1. `expected_time_s`: mean time until
-         *     localized by way of this place; `time_90_s`: not exceeded in 90 % of the rollouts (None when not sampled).
+         *     localized by way of this place; `time_90_s`: not exceeded by nine of ten searches (None when not sampled).
          *     `altitude_amsl_m`: at which it would be flown to from where the craft was, None before terrain counted.
          *     `forecasts`: of a plan for several emitters, one each. `first`: those that came first in it, empty when all were
          *     alike. `set_back`: those that would have, and did not.

@@ -191,6 +191,10 @@ def test_a_few_lost_searches_do_not_put_the_mean_above_the_time_in_nine_of_ten()
     assert in_nine_of_ten(np.array([])) is None
 
 
+def test_the_time_in_nine_of_ten_knows_of_what_no_rollout_simulates() -> None:
+    assert in_nine_of_ten(np.linspace(50.0, 150.0, 101)) == pytest.approx(1.25 * 140.0)
+
+
 def test_turns_to_come_take_as_long_as_those_still_looked_for_ask() -> None:
     """A narrow receiver goes round once for each group; what is found is not turned for any more."""
     tags = [
