@@ -22,7 +22,7 @@ pytestmark = pytest.mark.system
 
 NEVER_STOP: dict[str, Any] = {
     "sensor": {"bearing_errors": "joint", "listen_on_the_way": True, "swing_on_the_way": True, "never_stop": True},
-    "localization": {"minimum_places": 7},
+    "localization": {"minimum_places": 9},
     "planner": {"seed": 3},
 }
 """Long enough that legs tell as much as a turn at one place or another, whatever chance has in store."""
