@@ -37,7 +37,7 @@ it("the place of a bearing that somebody reported has their name, not a number",
 
 it("a bearing without a sweep is drawn as of middling quality, as nobody measured it", () => {
   const told = someBearing({ sweep_id: null, quality: 1, peaks: [] });
-  expect(of(seen(told), "main", "wedge").map((f) => f.properties?.quality)).toEqual([0.5, 0.5]);
+  expect(of(seen(told), "main", "wedge").map((f) => f.properties?.quality)).toEqual([0.775, 0.775]);
   expect(of(seen(someBearing({ quality: 0.8 })), "main").map((f) => f.properties?.quality)).toEqual([0.8]);
 });
 

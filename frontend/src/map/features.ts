@@ -109,14 +109,14 @@ function rayLengths(spec: MissionSpec | null): (at: LonLat, bearing: number) => 
   };
 }
 
-/** Lines and wedges (+- sigma), `quality` 0..1 (the middle without a sweep: nobody measured it), `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
+/** Lines and wedges (+- sigma), `quality` 0..1 (the middle of the colours without a sweep: nobody measured it), `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
 function directionFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
   const length = rayLengths(spec);
   const ray = (at: LonLat, bearing: number) => [at, destination(at, bearing, length(at, bearing))];
   const used = bearings.filter((b) => !b.excluded);
   const counted = used.flatMap(({ fact }, i) => {
     const at = lonLat(fact.place);
-    const shared = { quality: fact.sweep_id ? fact.quality : 0.5, age: used.length - 1 - i };
+    const shared = { quality: fact.sweep_id ? fact.quality : 0.775, age: used.length - 1 - i };
     return [
       polygon(wedge(at, fact.bearing_deg, fact.sigma_deg, length(at, fact.bearing_deg)), { ...shared, what: "wedge" }),
       line(ray(at, fact.bearing_deg), { ...shared, what: "main" }),
