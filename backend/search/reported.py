@@ -20,7 +20,7 @@ from backend.spec import MissionSpec, Place
 from hardware.frame import LocalFrame
 
 FAR_M = 50_000.0
-"""What is told from further away, or found there, belongs to another search."""
+"""What was heard from farther away, or found there, belongs to another search."""
 COMPASS_SIGMA_DEG = 5.0
 """Of a hand-held compass, as all bearings of one source have it in common."""
 COMPASS_SHARE = 0.4

@@ -23,7 +23,7 @@ class Hangar:
     """Remembers the simulated vehicle in a file, so that it is found again when the server was killed: in the air or on
     the ground, with what is left in its battery. Whoever ends the server on purpose gets a charged one.
 
-    By its token it is told from another data directory's, which may have got its ports after it had ended.
+    Its token tells it apart from another data directory's, which may have got its ports after it had ended.
     """
 
     settings: Settings

@@ -14,14 +14,13 @@ from pathlib import Path
 from statistics import fmean
 
 from backend.cli.field_missions import FieldMission
-from tests.benchmarks.field_world import Setting, flown, settings_of
+from tests.benchmarks.field_world import NEW, Setting, flown, settings_of
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
 
 MOST_BEARINGS = 3
-NEW = "swings"
 COLUMNS = (
     Column(name="compass off, degrees"),
     Column(name="antenna"),

@@ -98,7 +98,7 @@ def parser() -> argparse.ArgumentParser:
         help="set a parameter, for instance NAV_DLL_ACT=0 (may be repeated)",
     )  # fmt: skip
     p.add_argument("--control", type=int, default=0, metavar="PORT", help="UDP port for orders on 127.0.0.1 (0: any)")
-    p.add_argument("--token", default="", help="told to whoever pings it: by this its starter knows it again")
+    p.add_argument("--token", default="", help="its answer to a ping, by which its starter knows it again")
     p.add_argument(
         "--station-timeout", type=_positive, default=Schedule().station_timeout, metavar="S",
         help="wall seconds below which a silent ground station is not taken for lost (for sped-up runs)",

@@ -119,7 +119,7 @@ def test_other_archives_are_refused(tmp_path: Path, make, form: TileType, fault:
 
 @pytest.mark.parametrize("lon", [179.995, -179.995])
 def test_the_ground_goes_on_across_180_degrees(tmp_path: Path, lon: float) -> None:
-    """Where a place is told with a longitude from -180 to 180, whichever side the home is on."""
+    """Of places with longitudes from -180 to 180, whichever side the home is on."""
     west = Terrain(-16.75, 179.9, 1e-4, 1e-4, np.full((1000, 1001), 300.0, np.float32), ("west",))
     east = Terrain(-16.75, -180.0, 1e-4, 1e-4, np.full((1000, 1001), 500.0, np.float32), ("east",))
     ground = around(Place(-16.8, lon), [west, east])
