@@ -31,7 +31,7 @@ function Histogram({ times }: { times: readonly number[] }) {
 }
 
 /** How many of the simulated searches the charge covers, the way home from the farthest corner and the reserve kept. */
-function BatteryCover({ times, spec }: { times: readonly number[]; spec: MissionSpec }) {
+function BatteryCover({ times, worst, spec }: { times: readonly number[]; worst: number | null; spec: MissionSpec }) {
   const at = vehicle.value.at;
   const reported = telemetry.value?.value.battery_percent ?? null;
   if (!at || times.length < 2) return null;
@@ -39,7 +39,7 @@ function BatteryCover({ times, spec }: { times: readonly number[]; spec: Mission
   const share = coveredShare(budget, times);
   const key = reported === null ? "preview.batteryFull" : "preview.battery";
   return (
-    <p data-testid="preview-battery" data-share={share} class={share < 0.9 ? "battery-short" : ""}>
+    <p data-testid="preview-battery" data-share={share} class={share < 0.9 || !coveredShare(budget, [worst!]) ? "battery-short" : ""}>
       <strong>{t(key, { charge: Math.round(budget.chargePercent), share: Math.floor(100 * share) })}</strong>{" "}
       <span class="muted">{t("preview.batteryKept", { kept: Math.round(budget.keptPercent) })}</span>
     </p>
@@ -72,7 +72,7 @@ export function PreviewCard() {
             </p>
           )}
           {found.times_s.length > 1 && <Histogram times={found.times_s} />}
-          <BatteryCover times={found.times_s} spec={draft.value!.spec} />
+          <BatteryCover times={found.times_s} worst={found.time_90_s} spec={draft.value!.spec} />
           <p class="muted">
             {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: reasonText(found.reason) })}
           </p>

@@ -5,7 +5,7 @@ import type { MissionView } from "./view";
 
 export interface TimeLeft {
   meanS: number;
-  /** Not exceeded in 90 % of the rollouts; null when not sampled. */
+  /** Not exceeded by nine of ten searches; null when not sampled. */
   worstS: number | null;
 }
 
