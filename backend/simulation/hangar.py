@@ -78,7 +78,7 @@ class Hangar:
         try:
             kept = json.loads(self._register.read_text())
             found = await find_simulated(int(kept["connect_port"]), int(kept["control_port"]), kept.get("token"))
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, OverflowError):
             return None
         same = all(kept.get(name) == value for name, value in self._key().items())
         return None if found is None else (found, same)

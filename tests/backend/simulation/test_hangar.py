@@ -44,7 +44,8 @@ async def test_a_battery_survives_a_server_that_died_and_is_full_after_one_that_
 
 
 async def test_a_register_that_cannot_be_read_is_no_vehicle(tmp_path: Path) -> None:
-    for content in ("", "[]", json.dumps({"connect_port": "x"})):
+    beyond = json.dumps({"connect_port": 14540, "control_port": 1_454_000})
+    for content in ("", "[]", json.dumps({"connect_port": "x"}), beyond, beyond.replace("14540", "1e999")):
         (tmp_path / "simulated_vehicle.json").write_text(content)
         assert await Hangar(Settings(data_dir=tmp_path))._left_behind() is None
 
