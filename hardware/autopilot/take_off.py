@@ -21,7 +21,7 @@ RISES_M, RISES_S, RISES_WALL_S = 0.5, 10.0, 2.0
 """A climb that gains less in this time has ended: a pilot who selects PX4's own HOLD stops it, and that is our mode."""
 JUMPS_M, LASTS_S = 2.0, 4.0
 """A height that stays lower by more for this long in a climb has jumped: what was gained counts from there. A noisy one
-comes back before."""
+comes back before; so does a climb of less than 0.5 m/s, which is taken for one that ended then."""
 
 
 async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
