@@ -1,69 +1,19 @@
-"""Who flies, rule by rule. The sweep over every state is in test_authority_sweep.py."""
+"""Who flies, rule by rule. What an order undid: test_undone_switches.py. Every state: test_authority_sweep.py."""
 
 from __future__ import annotations
 
 import pytest
+from flown_craft import GUIDED, HOLD, KINDS, LAND, POSCTL, RETURN, Craft, flying
 
 from hardware.authority import (
     GIVEN_BACK_S,
     HOMEWARD,
-    Authority,
     CommandAcknowledged,
-    CommandSent,
     FlightEnded,
-    ModeHeard,
-    ModeKind,
     OperatorTookControl,
-    Seen,
     ServerRestarted,
     SticksTookOver,
-    SwitchMoved,
-    authority_after,
 )
-
-HOLD, GUIDED, POSCTL, RETURN, LAND = 1, 2, 3, 4, 5
-KINDS: dict[int, ModeKind] = {HOLD: "waiting", GUIDED: "waiting", POSCTL: "other", RETURN: "return", LAND: "land"}
-NAMES = {HOLD: "HOLD", GUIDED: "GUIDED", POSCTL: "POSCTL", RETURN: "RETURN", LAND: "LAND"}
-
-
-class Craft:
-    """`now`: who flies after all that was seen; every `hears` is a tenth of a second later."""
-
-    def __init__(self, *before: Seen) -> None:
-        self.now = Authority()
-        self.at_s = 1_000.0
-        for seen in before:
-            self.sees(seen)
-
-    def sees(self, seen: Seen) -> Authority:
-        self.now = authority_after(self.now, seen)
-        return self.now
-
-    def hears(
-        self, mode: int, armed: bool | None = True, in_air: bool = True, after_silence: bool = False
-    ) -> Authority:
-        self.at_s += 0.1
-        return self.sees(ModeHeard(mode, KINDS[mode], NAMES[mode], armed, in_air, after_silence, self.at_s))
-
-    def on_ground(self, mode: int, armed: bool | None = False) -> Authority:
-        return self.hears(mode, armed, in_air=False)
-
-    def commands(self, *modes: int) -> Authority:
-        return self.sees(CommandSent(frozenset(modes)))
-
-    def waits(self, seconds: float) -> None:
-        self.at_s += seconds
-
-
-def flying(mode: int = HOLD) -> Craft:
-    """By our command."""
-    craft = Craft()
-    craft.on_ground(HOLD)
-    craft.commands(mode)
-    craft.sees(CommandAcknowledged())
-    craft.hears(mode)
-    assert craft.now.who == "ours"
-    return craft
 
 
 def test_the_mode_before_a_command_is_tolerated_until_the_commanded_one_was_seen() -> None:
@@ -342,68 +292,3 @@ def test_a_restart_just_after_a_command_takes_the_waiting_vehicle_for_nobodys() 
 @pytest.mark.parametrize("mode", sorted(KINDS))
 def test_the_way_home_is_known_whoever_began_it(mode: int) -> None:
     assert flying(mode).now.homeward == (KINDS[mode] in HOMEWARD)
-
-
-@pytest.mark.parametrize("order", [RETURN, GUIDED])
-def test_a_switch_that_a_command_under_way_undid_is_not_given_back(order: int) -> None:
-    craft = flying(HOLD)
-    craft.commands(order)
-    craft.hears(POSCTL)
-    undone = craft.hears(order)
-    assert (undone.who, undone.undone, undone.given_back) == ("pilot", True, False)
-    craft.waits(GIVEN_BACK_S)
-    assert craft.hears(order) == undone
-    again = craft.hears(POSCTL)
-    assert (again.who, again.undone) == ("pilot", False)
-    craft.waits(GIVEN_BACK_S)
-    assert craft.hears(HOLD).given_back
-
-
-def test_sticks_that_a_command_under_way_undid_are_not_given_back_either() -> None:
-    craft = flying(HOLD)
-    craft.commands(GUIDED)
-    craft.sees(SticksTookOver(craft.at_s))
-    craft.hears(POSCTL)
-    assert craft.hears(GUIDED).undone
-
-
-def test_a_pilot_who_gives_back_at_once_was_undone_by_nobody() -> None:
-    """The command before had long shown its mode."""
-    craft = flying(HOLD)
-    craft.hears(POSCTL)
-    assert not craft.hears(HOLD).undone
-    craft.waits(GIVEN_BACK_S)
-    assert craft.hears(HOLD).given_back
-
-
-def test_an_operator_may_take_what_was_undone() -> None:
-    craft = flying(HOLD)
-    craft.commands(GUIDED)
-    craft.hears(POSCTL)
-    craft.hears(GUIDED)
-    assert (craft.sees(OperatorTookControl()).who, craft.now.undone) == ("ours", False)
-
-
-def test_a_switch_that_an_order_undid_before_its_mode_was_told_is_known_by_its_movement() -> None:
-    craft = flying()
-    craft.commands(RETURN)
-    craft.hears(RETURN)
-
-    taken = craft.sees(SwitchMoved("RETURN", craft.at_s))
-
-    assert (taken.who, taken.taken_by, taken.mode) == ("pilot", "mode", "RETURN")
-    assert taken.undone
-    assert not craft.hears(RETURN).given_back
-    craft.waits(GIVEN_BACK_S)
-    craft.hears(POSCTL)
-    assert craft.hears(HOLD).given_back
-
-
-def test_a_switch_moved_on_the_ground_or_while_nothing_is_commanded_takes_nothing() -> None:
-    found = Craft()
-    found.hears(HOLD)
-    assert found.sees(SwitchMoved("HOLD", found.at_s)).taken_by is None
-    ground = Craft()
-    ground.on_ground(HOLD)
-    ground.commands(HOLD)
-    assert ground.sees(SwitchMoved("HOLD", ground.at_s)).taken_by is None
