@@ -80,7 +80,7 @@ class MavsdkVehicle:
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
         charge_known = heard.battery_percent is not None
         for rule, name, value in found:
-            if rule.watch == "station_time" and value is not None:
+            if rule.watch == "station_time" and value is not None and value > 0.0:
                 monitor.patience_s = value
             thresholds = {one: await monitor.link.parameter(one) for one in rule.thresholds or ()}
             checks.append(failsafe_check(rule, name, value, thresholds, charge_known))

@@ -143,6 +143,9 @@ async def test_its_patience_with_a_silent_station_is_known_by_itself_and_with_ea
     await rig.sim.order("set_param", name=monitor.dialect.station_time, value=7)
     await rig.vehicle.preflight()
     assert monitor.patience_s == 7.0
+    await rig.sim.order("set_param", name=monitor.dialect.station_time, value=0)
+    await rig.vehicle.preflight()
+    assert monitor.patience_s == 7.0, "no patience is none that is known"
 
 
 async def test_a_rebooted_autopilot_is_asked_for_its_telemetry_again(rig: Rig) -> None:
