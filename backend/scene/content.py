@@ -28,7 +28,7 @@ from hardware.readings import Place
 @dataclass(frozen=True, slots=True)
 class SweepMark:
     """One sweep where it was taken. bearing_deg None: it was rejected. counted False: rejected, or excluded by the
-    operator. quality: 0.775, the middle of the colours, without a sweep: nobody measured it.
+    operator. quality None: there was no sweep to measure it.
     peaks: (bearing_deg, weight) of weaker directions. power_db: 180 bins of 2 degrees, NaN where empty."""
 
     place_number: int
@@ -37,7 +37,7 @@ class SweepMark:
     z: float
     bearing_deg: float | None
     sigma_deg: float
-    quality: float
+    quality: float | None
     counted: bool
     peaks: tuple[tuple[float, float], ...]
     power_db: NDArray[np.float64]
@@ -234,7 +234,7 @@ def _bearing(story: Story, event: BearingMeasured) -> SweepMark:
         z=max(0.0, event.altitude_amsl_m - story.state.search.home_amsl_m),
         bearing_deg=event.bearing_deg,
         sigma_deg=event.sigma_deg,
-        quality=0.775 if event.sweep_id is None else event.quality,
+        quality=None if event.sweep_id is None else event.quality,
         counted=story.state.search.emitters[event.emitter_id].counts(event),
         peaks=tuple((peak.bearing_deg, peak.weight) for peak in event.peaks),
         power_db=_power(event.binned_db),

@@ -64,7 +64,9 @@ def _bearing(
     number: int, sweep: SweepMark, age: int, area: BaseGeometry, palette: Palette, extent_m: float
 ) -> Iterator[Item]:
     """A line at the height of the antenna, its wedge of one sigma on the ground, and a curtain between the two."""
-    quality = (sweep.quality - LOWEST_QUALITY) / (HIGHEST_QUALITY - LOWEST_QUALITY)
+    unmeasured = 0.5 * (LOWEST_QUALITY + HIGHEST_QUALITY)
+    measured = unmeasured if sweep.quality is None else sweep.quality
+    quality = (measured - LOWEST_QUALITY) / (HIGHEST_QUALITY - LOWEST_QUALITY)
     colour = between(palette.bearing_low, palette.bearing_high, quality if sweep.counted else 0.0)
     colour = between(palette.grid_major, colour, max(0.45, 1.0 - 0.13 * age))
     reach = _reach(sweep, area, extent_m)

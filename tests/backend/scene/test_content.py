@@ -43,10 +43,10 @@ def test_sweeps_carry_their_bearing_height_and_power(recorded) -> None:
     assert [weight for _, weight in second.peaks] == [0.3]
 
 
-def test_a_bearing_without_a_sweep_is_of_middling_quality(recorded) -> None:
+def test_a_bearing_without_a_sweep_is_of_no_quality(recorded) -> None:
     (measured, *_) = (record.event for record in recorded if record.event.kind == "bearing_measured")
     told = measured.model_copy(update={"bearing_id": "t1", "sweep_id": None, "quality": 1.0, "binned_db": []})
-    assert [sweep.quality for sweep in at_end(more(recorded, told)).sweeps] == [0.4, 0.9, 0.9, 0.9, 0.775]
+    assert [sweep.quality for sweep in at_end(more(recorded, told)).sweeps] == [0.4, 0.9, 0.9, 0.9, None]
 
 
 def test_an_excluded_bearing_stays_visible_but_does_not_count(recorded) -> None:
