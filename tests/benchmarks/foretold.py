@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.foretold --missions 80 --seed 1 --compass sd --antennas yagi --pieces FOLDER
 
-FOLDER: as of tests.benchmarks.field_world; missions that it has are told, the others flown. Only those that localized
-count; of several plans with as many bearings the first.
+FOLDER: as tests.benchmarks.field_world keeps it; only missions that it lacks are flown. Those that localized count; of
+several plans with as many bearings the first.
 """
 
 from __future__ import annotations
