@@ -1,4 +1,4 @@
-"""A pilot's switch that an order of ours crossed and undid is seen, and is no giving back."""
+"""A pilot's switch that crossed our order, and was undone by it, is noticed and does not give control back to us."""
 
 from __future__ import annotations
 
