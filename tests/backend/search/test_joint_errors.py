@@ -16,7 +16,7 @@ from backend.search.lessons import errors_now
 from backend.search.localization import Localization, localization
 from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planner_bearings import source_name
-from backend.search.planning import foreseen, foreseen_for
+from backend.search.planning import ECHOES_AHEAD, foreseen, foreseen_for
 from backend.search.source_priors import priors_of, unknown_errors
 from backend.search.state import SearchState
 from backend.spec import MissionSpec, Polygon, SensorSpec
@@ -195,7 +195,8 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
     swinging = task(bearing_errors="joint", listen_on_the_way=True, swing_on_the_way=True)
     seen = turned(5.0)
     first = foreseen_for(swinging, (), JOINT.prior).sigma
-    assert first == foreseen_for(JOINT, (), JOINT.prior).sigma
+    assert first == pytest.approx(JOINT.problem.sigma)
+    assert foreseen_for(JOINT, (), JOINT.prior).sigma == ECHOES_AHEAD * first
     for measured in (seen[:1], seen):
         belief = JOINT.planning_belief(JOINT.planner_bearings(measured))
         turn, place = (foreseen_for(one, measured, belief).sigma for one in (JOINT, swinging))
