@@ -32,8 +32,11 @@ from hardware.sdr.sigmf_names import DATA, META
 
 NUM_CHANNELS_KEY: Final = "core:num_channels"
 AZIMUTH_KEY: Final = "antenna:azimuth_angle"
-HEADER_BYTES_KEY: Final = "core:header_bytes"
 """Of the antenna extension to SigMF: direction of the main beam from north, degrees clockwise."""
+HEADER_BYTES_KEY: Final = "core:header_bytes"
+OFFSET_KEY: Final = "core:offset"
+"""Number of the file's first sample: where one recording is kept in several files, all numbers go on from file to
+file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +130,9 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     """One recording: its meta file, its data file beside it, or an archive. Raises RecordingError."""
     path = Path(path)
     recording = _opened(path)
-    captures = sorted(recording.get_captures(), key=lambda capture: _whole(path, capture, sigmf.SAMPLE_START_KEY))
+    before = _numbered_on(path, recording)
+    captures = [_counted_here(path, capture, before) for capture in recording.get_captures()]
+    captures.sort(key=lambda capture: capture[sigmf.SAMPLE_START_KEY])
     for capture in captures:
         _whole(path, capture, HEADER_BYTES_KEY)
     rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
@@ -164,7 +169,7 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
         float(rate),
         float(centre),
         _segments(path, captures, rate),
-        _azimuths(path, recording, captures, samples.size),
+        _azimuths(path, [_counted_here(path, a, before) for a in recording.get_annotations()], captures, samples.size),
         _place(path, recording, captures),
     )
 
@@ -218,6 +223,18 @@ def _whole(path: Path, stated: dict[str, Any], key: str) -> int:
     return int(count)
 
 
+def _numbered_on(path: Path, recording: sigmf.SigMFFile) -> int:
+    """How many samples lay in the files before; 0 where captures are counted from this file's first all the same."""
+    before = _whole(path, {OFFSET_KEY: recording.get_global_field(OFFSET_KEY)}, OFFSET_KEY)
+    firsts = [_whole(path, capture, sigmf.SAMPLE_START_KEY) for capture in recording.get_captures()]
+    return before if before <= min(firsts, default=0) else 0
+
+
+def _counted_here(path: Path, stated: dict[str, Any], before: int) -> dict[str, Any]:
+    """A capture or annotation with its first sample counted from the file's."""
+    return {**stated, sigmf.SAMPLE_START_KEY: max(_whole(path, stated, sigmf.SAMPLE_START_KEY) - before, 0)}
+
+
 def _segments(path: Path, captures: Sequence[dict[str, Any]], rate_hz: float) -> tuple[Segment, ...]:
     """Where a capture states no time, counted on from the last that states one, or back from the first."""
     firsts, times = [_whole(path, c, sigmf.SAMPLE_START_KEY) for c in captures], [_time(path, c) for c in captures]
@@ -247,7 +264,7 @@ def _time(path: Path, capture: dict[str, Any]) -> float | None:
 
 
 def _azimuths(
-    path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, Any]], size: int
+    path: Path, annotations: Sequence[dict[str, Any]], captures: Sequence[dict[str, Any]], size: int
 ) -> tuple[Azimuth, ...]:
     """Of annotations, else of captures (each holds until the next), in time order."""
     found = [
@@ -256,7 +273,7 @@ def _azimuths(
             _whole(path, a, sigmf.SAMPLE_COUNT_KEY),
             _degrees(path, a[AZIMUTH_KEY]),
         )
-        for a in recording.get_annotations()
+        for a in annotations
         if AZIMUTH_KEY in a
     ]
     if not found:

@@ -147,6 +147,32 @@ def test_captures_that_all_begin_beyond_the_samples_are_refused(tmp_path: Path, 
     )
 
 
+@pytest.mark.filterwarnings("ignore:Data source ends before")
+def test_samples_that_are_numbered_on_from_another_file_have_their_own_times_and_directions(tmp_path: Path) -> None:
+    """core:offset says how many were in the files before."""
+    alone = load_sigmf(in_two(tmp_path, EARLIER, LATER))
+    meta = json.loads(alone.path.read_text())
+    for one in (*meta["captures"], *meta["annotations"]):
+        one["core:sample_start"] += 1500
+    alone.path.write_text(json.dumps(meta))
+    part = load_sigmf(changed(alone.path, offset=1500))
+    assert (part.segments, part.azimuths) == (alone.segments, alone.azimuths)
+
+
+@pytest.mark.parametrize("offset", [1, 10**12])
+def test_captures_that_are_not_numbered_on_are_counted_from_the_files_first_sample(tmp_path: Path, offset: int) -> None:
+    alone = load_sigmf(in_two(tmp_path, EARLIER, LATER))
+    part = load_sigmf(changed(alone.path, offset=offset))
+    assert (part.segments, part.azimuths) == (alone.segments, alone.azimuths)
+
+
+@pytest.mark.parametrize("offset", [-1, 1.5, "7"])
+def test_an_offset_that_cannot_be_is_named(tmp_path: Path, offset: Any) -> None:
+    with pytest.raises(RecordingError) as refused:
+        load_sigmf(changed(in_two(tmp_path, EARLIER, LATER), offset=offset))
+    assert isinstance(refused.value.reason, FileUnreadable)
+
+
 def test_samples_before_the_first_capture_are_read_too(tmp_path: Path) -> None:
     recorded = load_sigmf(as_stated(tmp_path, capture(1000.0, EARLIER)))
     assert sum(block.samples.size for block in recorded.blocks(300)) == 2000
