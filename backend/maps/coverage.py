@@ -83,7 +83,7 @@ def _of_map(plane: BaseGeometry, latitude: float, tiles: TileSet) -> tuple[MapCo
         needed = tiles_over(plane, zoom)
         if needed is None:
             break
-        present = needed[[tiles.has(zoom, int(x), int(y)) for x, y in needed]]
+        present = needed[[tiles.has(zoom, int(x) % 2**zoom, int(y)) for x, y in needed]]
         shown = shapely.union_all(tile_squares(present, zoom))
         fraction = _share(plane.intersection(shown), plane)
         resolution = metres_per_pixel(zoom, latitude)
@@ -117,11 +117,13 @@ def metres_per_pixel(zoom: int, latitude_deg: float) -> float:
 
 
 def tiles_over(plane: BaseGeometry, zoom: int) -> NDArray[np.int64] | None:
-    """(n, 2) x, y of the tiles that share area with the geometry; None when there are too many."""
+    """(n, 2) x, y of the tiles that share area with the geometry; None when there are too many. Beyond 180 degrees x
+    goes on, below 0 or from 2^zoom."""
     n = 2**zoom
-    west, north, east, south = (np.array(plane.bounds) * n).clip(0, n - 1e-9).tolist()
-    x = np.arange(int(west), int(east) + 1)
-    y = np.arange(int(north), int(south) + 1)
+    sides: list[float] = (np.array(plane.bounds) * n).tolist()
+    west, north, east, south = sides
+    x = np.arange(math.floor(west), math.floor(east) + 1)
+    y = np.arange(int(max(north, 0.0)), int(min(south, n - 1e-9)) + 1)
     if len(x) * len(y) > 4 * MOST_TILES:
         return None
     tiles = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
@@ -142,9 +144,11 @@ def tile_squares(tiles: NDArray[np.int64], zoom: int) -> NDArray[np.object_]:
 
 
 def to_plane(area: Area) -> BaseGeometry:
-    """The area in the Mercator plane, 0..1 from west to east and from north to south."""
+    """The area in the Mercator plane, 0..1 from west to east and from north to south; in one piece across 180 degrees,
+    beyond 0 or 1."""
     try:
         geometry = shape(area.model_dump())
+        geometry = shapely.transform(geometry, _beside_first)
     except (ValueError, IndexError, shapely.errors.GEOSException) as error:
         raise MapRefused(TooFewCorners("area")) from error
     if not geometry.is_empty and not geometry.is_valid:
@@ -156,6 +160,12 @@ def to_plane(area: Area) -> BaseGeometry:
     return shapely.transform(geometry, _project)
 
 
+def _beside_first(lon_lat: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each longitude at most half a turn from the first."""
+    lon = lon_lat[:, 0]
+    return np.column_stack((lon - 360.0 * np.rint((lon - lon[:1]) / 360.0), lon_lat[:, 1]))
+
+
 def _project(lon_lat: NDArray[np.float64]) -> NDArray[np.float64]:
     """Web Mercator: x = (lon + 180) / 360, y = (1 - asinh(tan(lat)) / pi) / 2."""
     lon, lat = lon_lat[:, 0], np.radians(lon_lat[:, 1])
@@ -164,7 +174,8 @@ def _project(lon_lat: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _unproject(xy: NDArray[np.float64]) -> NDArray[np.float64]:
     lat = np.arctan(np.sinh(np.pi * (1 - 2 * xy[:, 1])))
-    return np.column_stack((xy[:, 0] * 360 - 180, np.degrees(lat)))
+    lon = xy[:, 0] * 360 - 180
+    return np.column_stack((lon - 360.0 * np.rint(lon / 360.0), np.degrees(lat)))
 
 
 def _middle_latitude(plane: BaseGeometry) -> float:

@@ -49,6 +49,28 @@ def test_resolution_at_the_equator_is_the_known_one() -> None:
     assert metres_per_pixel(16, 60.0) == pytest.approx(156_543.03 / 2**17, rel=1e-6)
 
 
+def test_an_area_across_180_degrees_is_covered_by_the_tiles_on_both_sides() -> None:
+    """It was taken for one around the whole earth."""
+    for area in (rectangle(179.995, -16.81, -179.995, -16.8), rectangle(-179.995, -16.81, 179.995, -16.8)):
+        asked: set[int] = set()
+
+        def on_both_sides(zoom: int, x: int, y: int, asked: set[int] = asked) -> bool:
+            asked.add(x)
+            return x in (0, 2**zoom - 1)
+
+        found = coverage(area, [TileSet("both", "both", 12, 14, on_both_sides)])
+        assert found.covered
+        assert asked == {0, 2**12 - 1, 2**13 - 1, 2**14 - 1}
+
+
+def test_what_a_map_misses_beyond_180_degrees_has_longitudes_on_earth() -> None:
+    area = rectangle(179.995, -16.81, -179.995, -16.8)
+    found = coverage(area, [TileSet("west", "west", 12, 14, lambda z, x, y: x == 2**z - 1)])
+    assert found.fraction == pytest.approx(0.5, abs=1e-6)
+    lon = [corner[0] for polygon in known(found.missing).coordinates for ring in polygon for corner in ring]
+    assert all(abs(abs(one) - 180.0) <= 0.005 + 1e-6 for one in lon)
+
+
 def test_a_map_of_the_western_half_misses_the_eastern() -> None:
     plane = to_plane(AREA)
     columns = sorted({int(x) for x, _ in known(tiles_over(plane, 16))})
