@@ -14,7 +14,7 @@ from contourpy import LineType, contour_generator
 from numpy.typing import NDArray
 from PIL import Image
 
-from backend.maps.terrain_cut import Source, bounds_of
+from backend.maps.terrain_cut import Source, bounds_of, meets
 from backend.maps.terrarium import Terrarium
 from backend.terrain import Terrain
 
@@ -32,8 +32,7 @@ def relief_tile(sources: Sequence[Source], zoom: int, x: int, y: int) -> bytes |
     lon, lat = _pixels(zoom, x, y)
     heights = np.full((TILE, TILE), np.nan)
     for source in sources:
-        west, south, east, north = bounds_of(source)
-        if west > lon[-1] or east < lon[0] or south > lat[0] or north < lat[-1]:
+        if not meets(bounds_of(source), (lon[0], lat[-1], lon[-1], lat[0])):
             continue
         if isinstance(source, Terrarium):
             found = _scaled(source.tile(zoom, x, y))

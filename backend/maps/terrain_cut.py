@@ -32,7 +32,7 @@ def around(place: Place, sources: Sequence[Source]) -> Terrain | None:
     reach_lat = REACH_M / METRES_PER_DEGREE
     reach_lon = reach_lat / max(math.cos(math.radians(place.lat)), 0.01)
     box = (place.lon - reach_lon, place.lat - reach_lat, place.lon + reach_lon, place.lat + reach_lat)
-    near = [source for source in sources if _meets(bounds_of(source), box)]
+    near = [source for source in sources if meets(bounds_of(source), box)]
     if not near:
         return None
     near.sort(key=lambda source: _steps(source, place.lat)[0])
@@ -78,7 +78,8 @@ def bounds_of(source: Source) -> tuple[float, float, float, float]:
     return source.west_deg, south, east, source.north_deg
 
 
-def _meets(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
+def meets(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
+    """Whether two boxes (west, south, east, north, degrees) have ground in common, across 180 degrees too."""
     beside = any(one[0] < other[2] + turn and other[0] + turn < one[2] for turn in (-360.0, 0.0, 360.0))
     return beside and one[1] < other[3] and other[1] < one[3]
 

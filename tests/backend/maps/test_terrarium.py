@@ -135,3 +135,11 @@ def test_tiles_go_on_across_180_degrees(tmp_path: Path) -> None:
     source = Terrarium(flat, "made")
     for lon in ([179.99, 180.0, 180.01], [-179.99, -180.0, -180.01]):
         assert source.at(np.full(3, 50.62), np.array(lon)) == pytest.approx([300.0] * 3)
+
+
+def test_the_ground_is_pictured_on_both_sides_of_180_degrees() -> None:
+    """Of a file that goes on to 180.05."""
+    across = Terrain(-16.75, 179.95, 1e-3, 1e-3, np.full((100, 101), 300.0, np.float32), ("across",))
+    row = 560  # at zoom 10, from 16.6 to 17.0 degrees south
+    assert all(relief_tile([across], 10, column, row) is not None for column in (0, 1023))
+    assert all(relief_tile([across], 10, column, row) is None for column in (1, 512, 1022))
