@@ -54,5 +54,13 @@ def kraken_in(table: Table) -> Recording | None:
 
 def _recorded(row: Row, told: ReportedBearing) -> RecordedBearing:
     return RecordedBearing(
-        row.line, told.place, told.bearing_deg, told.sigma_deg, told.by, True, told.taken_at_s, told.frequency_hz
+        row.line,
+        told.place,
+        told.bearing_deg,
+        told.sigma_deg,
+        told.by,
+        True,
+        told.taken_at_s,
+        told.frequency_hz,
+        told.bearing_id,
     )

@@ -268,15 +268,16 @@ class FileLeftOut:
 
 @dataclass(frozen=True, slots=True)
 class KindLeftOut:
-    """What KML can hold and the map cannot draw. kind: KML's name of the element."""
+    """What a file holds and is not taken: of KML what the map cannot draw, by the name of its element; bearings
+    that the mission has already."""
 
-    kind: NotDrawn
+    kind: NotDrawn | Literal["known_bearing"]
     count: int
     code: Literal["kind_left_out"] = "kind_left_out"
     english: ClassVar[Words] = Words(
-        "{kind?NetworkLink=Links to other files are|GroundOverlay=Pictures on the ground are"
-        "|ScreenOverlay=Pictures on the screen are|PhotoOverlay=Photos are|Model=3D models are|Tour=Tours are} left "
-        "out ({count})."
+        "{kind?NetworkLink=Links to other files|GroundOverlay=Pictures on the ground"
+        "|ScreenOverlay=Pictures on the screen|PhotoOverlay=Photos|Model=3D models|Tour=Tours"
+        "|known_bearing=Known bearings} are left out ({count})."
     )
 
 

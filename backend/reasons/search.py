@@ -228,9 +228,9 @@ class ImportRemark:
     about: Literal["place_replaced", "altitude_unknown", "bearings_stand"]
     code: Literal["import_remark"] = "import_remark"
     english: ClassVar[Words] = Words(
-        "{about?place_replaced=The place that was named replaces the one in"
-        "|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in"
-        "|bearings_stand=The place or antenna that was named changes nothing about the bearings in} {file}."
+        "{about?place_replaced=The place named replaces the one in"
+        "|altitude_unknown=0 m AMSL is noted, as no altitude stands in"
+        "|bearings_stand=The place or antenna named changes no bearing in} {file}."
     )
 
 

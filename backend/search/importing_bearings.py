@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 
 from backend.events import BearingMeasured, BearingSource, ImportSource, PersonSource
 from backend.reasons import search as reasons
+from backend.reasons.maps import KindLeftOut
 from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
 from backend.search.importing import (
@@ -32,11 +34,14 @@ from hardware.frame import LocalFrame
 from hardware.readings import Place
 
 LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
+SAME_S, SAME_M, SAME_DEG = 1.0, 15.0, 0.1
+"""Two bearings of an emitter that differ by no more than all three are one that is told twice."""
 
 
 def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, *, believed: bool) -> Import:
     """Every bearing of the emitter and, where nobody else makes it, the belief after the last (believed): all bearings
-    are weighed again at each of them, which takes a processor most of a minute for 150. Raises MissionInputError."""
+    are weighed again at each of them, which takes a processor most of a minute for 150. What was known before, from its
+    station or another file, is left out. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
     heard_hz = [one.frequency_hz for one in recording.bearings]
     upload = replace(upload, emitter_id=emitter_heard(mission, upload.emitter_id, heard_hz))
@@ -54,9 +59,15 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, 
     for one in heard:
         refuse_far(one.place, mission)
     sure = _with_sigmas(heard, mission, state.home or corner_of(mission.area))
+    before = [_told_before(one, state.emitters[emitter.emitter_id].measured) for one in heard]
+    if (known := sum(told is not None for told in before)) > 0:
+        remarks.append(KindLeftOut("known_bearing", known))
+    sources = _sources(upload, heard, before)
+    numbers = count(last + 1)
     facts = [
-        _fact(mission_id, state, upload, emitter, source, one, number, at_s)
-        for number, (one, source, at_s) in enumerate(zip(sure, _sources(upload, heard), times, strict=True), last + 1)
+        _fact(mission_id, state, upload, emitter, source, one, next(numbers), at_s)
+        for one, source, at_s, told in zip(sure, sources, times, before, strict=True)
+        if told is None
     ]
     begins = import_fact(upload, emitter, by, first_s, remarks, sweep_ids=[], antenna=None)
     if not believed:
@@ -83,12 +94,34 @@ def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:
     return one.frequency_hz is None or same_channel(emitter, one.frequency_hz)
 
 
-def _sources(upload: Upload, bearings: Sequence[RecordedBearing]) -> list[BearingSource]:
-    """Of a log of several stations each of them, by the name under which it reports live: each has a compass. bearings:
-    of one emitter, which may be those of one of the stations."""
-    if len({one.tag for one in upload.recording.bearings if one.tag}) > 1:
-        return [PersonSource(name=str(one.tag)) for one in bearings]
-    return [ImportSource(recording_id=upload.recording_id)] * len(bearings)
+def _told_before(one: RecordedBearing, measured: Sequence[BearingMeasured]) -> BearingMeasured | None:
+    """The same one, reported by its station or out of another file."""
+    for fact in measured:
+        if one.live_id is not None and fact.bearing_id == one.live_id:
+            return fact
+        if one.at_s is None or fact.taken_at_s is None or abs(fact.taken_at_s - one.at_s) > SAME_S:
+            continue
+        off_deg = math.remainder(fact.bearing_deg - one.bearing_deg, 360.0)
+        away_m = math.hypot(*LocalFrame(one.place).to_enu(fact.place))
+        if abs(off_deg) <= SAME_DEG and away_m <= SAME_M:
+            return fact
+    return None
+
+
+def _sources(
+    upload: Upload, bearings: Sequence[RecordedBearing], before: Sequence[BearingMeasured | None]
+) -> list[BearingSource]:
+    """Of a log of several stations each of them, by the name under which it reports live: each has a compass. So has
+    one alone that has reported live. bearings: of one emitter, which may be those of one of the stations; before: the
+    same as they are known."""
+    several = len({one.tag for one in upload.recording.bearings if one.tag}) > 1
+    live = {
+        one.tag: told.source
+        for one, told in zip(bearings, before, strict=True)
+        if told is not None and isinstance(told.source, PersonSource)
+    }
+    other = ImportSource(recording_id=upload.recording_id)
+    return [live.get(one.tag) or (PersonSource(name=str(one.tag)) if several else other) for one in bearings]
 
 
 def _fact(

@@ -61,7 +61,8 @@ class RecordedBearing:
     """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file.
 
     stated: whether the file gives its sigma, or the device that wrote it has a known one. at_s: UTC epoch seconds at
-    which it was taken, frequency_hz: of what was heard; None: the file does not tell.
+    which it was taken, frequency_hz: of what was heard; None: the file does not tell. live_id: under which its station
+    reports it while it is taken, None: it does not.
     """
 
     line: int
@@ -72,6 +73,7 @@ class RecordedBearing:
     stated: bool = True
     at_s: float | None = None
     frequency_hz: float | None = None
+    live_id: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -812,7 +812,7 @@ export const reasonsEn: ReasonTable = {
   ],
   file_left_out: ["The archive also holds {file}, which is left out."],
   kind_left_out: [
-    "{kind?NetworkLink=Links to other files are|GroundOverlay=Pictures on the ground are|ScreenOverlay=Pictures on the screen are|PhotoOverlay=Photos are|Model=3D models are|Tour=Tours are} left out ({count}).",
+    "{kind?NetworkLink=Links to other files|GroundOverlay=Pictures on the ground|ScreenOverlay=Pictures on the screen|PhotoOverlay=Photos|Model=3D models|Tour=Tours|known_bearing=Known bearings} are left out ({count}).",
   ],
   more_left_out: ["{parts|more part was|more parts were} left out."],
   nothing_to_draw: ["The file holds nothing that can be drawn. {left_out}", "Use another file."],
@@ -1063,7 +1063,7 @@ export const reasonsEn: ReasonTable = {
   which_emitter: ["The search has {emitters} emitters, and none of them is named.", "Name the emitter."],
   taken_earlier: ["It was taken {age_s} before it arrived."],
   import_remark: [
-    "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in|bearings_stand=The place or antenna that was named changes nothing about the bearings in} {file}.",
+    "{about?place_replaced=The place named replaces the one in|altitude_unknown=0 m AMSL is noted, as no altitude stands in|bearings_stand=The place or antenna named changes no bearing in} {file}.",
   ],
   other_frequency: ["The file {file} was recorded at {recorded_hz}; the mission looks for {wanted_hz}."],
   sweep_incomplete: [

@@ -4473,10 +4473,12 @@ export interface components {
              */
             kind: "keep_holding";
         };
-        /** @description What KML can hold and the map cannot draw. kind: KML's name of the element. */
+        /**
+         * @description What a file holds and is not taken: of KML what the map cannot draw, by the name of its element; bearings
+         *     that the mission has already.
+         */
         KindLeftOut: {
-            /** @enum {string} */
-            kind: "NetworkLink" | "GroundOverlay" | "ScreenOverlay" | "PhotoOverlay" | "Model" | "Tour";
+            kind: ("NetworkLink" | "GroundOverlay" | "ScreenOverlay" | "PhotoOverlay" | "Model" | "Tour") | "known_bearing";
             count: number;
             /**
              * @description discriminator enum property added by openapi-typescript

@@ -95,6 +95,51 @@ async def test_a_station_is_itself_for_an_emitter_that_no_other_station_of_the_l
     assert sources == {"fox": {"roof", "van"}, "tag": {"roof"}}
 
 
+async def report(client, mission_id: str, line: str) -> None:
+    reply = await client.post(f"/api/missions/{mission_id}/bearings/kraken", content=line)
+    assert reply.status_code == 201, reply.text
+
+
+async def known_of(services, mission_id: str) -> list[list[int]]:
+    imports = await facts(services, mission_id, "recording_imported")
+    return [[one.count for one in fact.remarks if one.code == "kind_left_out"] for fact in imports]
+
+
+async def test_a_stations_bearings_that_came_live_count_once_when_its_log_is_brought_in(client, services):
+    """In one minute the station's first line came live, and the log begins with another of it."""
+    mission_id = await draft(client)
+    lines = kraken().replace("170000", "169999").splitlines()
+    for line in lines[:2]:
+        await report(client, mission_id, line.replace("00000,", "08000,", 1).replace(", 350.0,", ", 351.0,"))
+    assert (await bring(client, mission_id, "\n".join(lines))).status_code == 201
+    bearings = await facts(services, mission_id, "bearing_measured")
+    assert [one.taken_at_s for one in bearings] == [1699990000.0 + 300.0 * n + 8.0 * (n < 2) for n in range(4)]
+    assert {one.source.name for one in bearings} == {"roof"}
+    (*_, belief) = await facts(services, mission_id, "belief_updated")
+    assert belief.bearings == 4
+    assert await known_of(services, mission_id) == [[2]]
+
+
+async def test_a_log_that_went_on_brings_what_is_new(client, services):
+    mission_id = await draft(client)
+    lines = kraken().splitlines()
+    for some in (lines[:3], lines, lines[1:]):
+        assert (await bring(client, mission_id, "\n".join(some))).status_code == 201
+    bearings = await facts(services, mission_id, "bearing_measured")
+    assert [one.taken_at_s for one in bearings] == [1700000000.0 + 300.0 * n for n in range(4)]
+    assert await known_of(services, mission_id) == [[], [3], [3]]
+
+
+async def test_bearings_of_another_time_place_or_direction_are_others(client, services):
+    mission_id = await draft(client)
+    first = kraken().splitlines()[0]
+    changes = (("1700000000000", "1700000061500"), ("50.6,", "50.6002,"), ("350.0", "349.8"))
+    others = [first.replace(*change) for change in changes]
+    for line in (first, *others):
+        assert (await bring(client, mission_id, line)).status_code == 201
+    assert await known_of(services, mission_id) == [[], [], [], []]
+
+
 async def test_a_file_is_called_what_can_be_shown_of_its_name(client, services):
     mission_id = await draft(client)
     files = {"files": ("../roof\u202evsc.csv", kraken(), "text/csv")}

@@ -70,7 +70,7 @@ export const maps = {
   ],
   file_left_out: ["Die weitere Datei {file} im Archiv ist ausgelassen."],
   kind_left_out: [
-    "{kind?NetworkLink=Verweise auf andere Dateien|GroundOverlay=Bilder auf dem Boden|ScreenOverlay=Bilder auf dem Schirm|PhotoOverlay=Fotos|Model=3D-Modelle|Tour=Touren} sind ausgelassen ({count}).",
+    "{kind?NetworkLink=Verweise auf andere Dateien|GroundOverlay=Bilder auf dem Boden|ScreenOverlay=Bilder auf dem Schirm|PhotoOverlay=Fotos|Model=3D-Modelle|Tour=Touren|known_bearing=Bekannte Peilungen} sind ausgelassen ({count}).",
   ],
   more_left_out: ["{parts|weiterer Teil ist|weitere Teile sind} ausgelassen."],
   nothing_to_draw: ["Die Datei enthält nichts, was sich zeichnen lässt. {left_out}", "Eine andere Datei nehmen."],

@@ -151,7 +151,7 @@ export const recording = {
     "In eine Mission einlesen, deren Gebiet sie umgibt, oder den richtigen Ort nennen.",
   ],
   import_remark: [
-    "{about?place_replaced=Der genannte Ort ersetzt den aus der Datei|altitude_unknown=0 m über dem Meer wird vermerkt, denn keine Höhe nennt die Datei|bearings_stand=Der genannte Ort oder die Antenne ändert nichts an den Peilungen in der Datei} {file}.",
+    "{about?place_replaced=Der genannte Ort ersetzt den aus der Datei|altitude_unknown=0 m über dem Meer wird vermerkt, ohne Höhe ist die Datei|bearings_stand=Der genannte Ort oder die Antenne ändert keine Peilung in der Datei} {file}.",
   ],
   other_frequency: ["Die Datei {file} wurde auf {recorded_hz} aufgenommen; die Mission sucht {wanted_hz}."],
   half_given: [
