@@ -18,7 +18,7 @@ from backend.events import BearingMeasured, BeliefUpdated, EstimateFact, Recorde
 from backend.search.emitter import EmitterState
 from backend.spec import MissionSpec
 from backend.wire.export import Tracks
-from backend.wire.export_facts import altitude_amsl_m, folded, mission_name, ray_lengths_m, xml_words
+from backend.wire.export_facts import altitude_amsl_m, folded, measured_quality, mission_name, ray_lengths_m, xml_words
 
 SIGMAS_95 = 2.4477
 UNKNOWN = "9999999.0"
@@ -114,8 +114,9 @@ def _bearing(mission_id: str, callsign: str, fact: BearingMeasured, at: datetime
     SubElement(detail, "bearing", value=f"{fact.bearing_deg % 360.0:.2f}")
     SubElement(detail, "inclination", value="0.0")
     SubElement(detail, "contact", callsign=callsign)
-    quality = "" if fact.sweep_id is None else f", quality {fact.quality:.2f}"
-    SubElement(detail, "remarks").text = f"sigma {fact.sigma_deg:.1f} degrees{quality}"
+    quality = measured_quality(fact)
+    said = "" if quality is None else f", quality {quality:.2f}"
+    SubElement(detail, "remarks").text = f"sigma {fact.sigma_deg:.1f} degrees{said}"
     return event
 
 

@@ -28,7 +28,15 @@ from backend.search.emitter import EmitterState
 from backend.search.state import SearchState
 from backend.spec import MissionSpec
 from backend.version import VERSION
-from backend.wire.export_facts import altitude_amsl_m, folded, mission_name, ray_lengths_m, taken_utc, xml_words
+from backend.wire.export_facts import (
+    altitude_amsl_m,
+    folded,
+    measured_quality,
+    mission_name,
+    ray_lengths_m,
+    taken_utc,
+    xml_words,
+)
 from backend.wire.export_geometry import area_geometry, path_geometry
 
 Tracks = Mapping[str, Sequence[TrackPoint]]
@@ -59,7 +67,7 @@ def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
     """The bearing file of the UAV-RT project, without header: tag id (the emitter's number), sweep, bearing (deg true),
     quality, lat, lon, altitude above the home of its craft (m; theirs is above ground), altitude AMSL (m), start and
     end (UTC epoch seconds; of a bearing that no craft of the mission took, both are when it was taken, or brought in
-    where nobody said). An altitude that is not known is empty; the quality of a bearing without a sweep is 1."""
+    where nobody said). An altitude that is not known is empty, as is the quality of a bearing without a sweep."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     emitters = tuple(folded(recorded).emitters.values())
@@ -83,7 +91,7 @@ def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
                     counted[event.bearing_id],
                     _no_formula(event.sweep_id or ""),
                     f"{event.bearing_deg:.6f}",
-                    f"{event.quality:.6f}",
+                    "" if (quality := measured_quality(event)) is None else f"{quality:.6f}",
                     f"{event.place.lat:.8f}",
                     f"{event.place.lon:.8f}",
                     *("" if metres is None else f"{metres:.3f}" for metres in (above_m, altitude_m)),
@@ -183,7 +191,7 @@ def emitter_features(state: SearchState, emitter: EmitterState, times_utc: Mappi
             **several,
             "bearing_deg": fact.bearing_deg,
             "sigma_deg": fact.sigma_deg,
-            "quality": None if fact.sweep_id is None else fact.quality,
+            "quality": measured_quality(fact),
             "excluded": not emitter.counts(fact),
             "at_utc": times_utc[fact.bearing_id].isoformat(),
         }

@@ -57,9 +57,14 @@ def taken_utc(record: Recorded, fact: BearingMeasured) -> datetime:
 
 
 def altitude_amsl_m(fact: BearingMeasured) -> float | None:
-    """None: nobody knows. A bearing that no craft took has 0 where neither its file nor a home told another."""
-    told = isinstance(fact.source, CraftSource) or fact.altitude_amsl_m != 0.0
+    """None: nobody knows. Without a sweep a bearing has its home's, and a file's sweep that tells none has 0."""
+    told = isinstance(fact.source, CraftSource) or (fact.sweep_id is not None and fact.altitude_amsl_m != 0.0)
     return fact.altitude_amsl_m if told else None
+
+
+def measured_quality(fact: BearingMeasured) -> float | None:
+    """None: there was no sweep to measure it."""
+    return None if fact.sweep_id is None else fact.quality
 
 
 def ray_lengths_m(facts: Sequence[BearingMeasured], estimate: EstimateFact | None) -> NDArray[np.float64]:

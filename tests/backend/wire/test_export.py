@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from narrowing import a, known
 from small_missions import AREA, FOX, TAG, bearing, mission, numbered
 
+from backend.bearing_file import read_bearing_file
 from backend.events import (
     BeliefUpdated,
     CraftSource,
@@ -129,6 +131,22 @@ def test_an_altitude_that_nobody_knows_is_not_sea_level(source) -> None:
     assert heights == [[], ["200.0"]]
 
 
+@pytest.mark.parametrize("source", [PersonSource(name="Ada"), ImportSource(recording_id="r1")])
+def test_the_homes_altitude_is_not_that_of_a_bearing_without_a_sweep(source) -> None:
+    """A bearing is told without an altitude, and has its mission's home's."""
+    told = by(source, 1, 200.0).model_copy(update={"sweep_id": None})
+    recorded = numbered([mission(FOX)[0], started("craft-1", 200.0), told])
+    assert [row[6:8] for row in rows(recorded)] == [["", ""]]
+    assert not [told for event in cot_events(recorded) for told in event.iter("height_amsl")]
+
+
+def test_bearings_that_were_exported_without_a_quality_are_read_again(tmp_path: Path) -> None:
+    told = by(PersonSource(name="Ada")).model_copy(update={"sweep_id": None, "quality": 1.0})
+    (tmp_path / "bearings.csv").write_text(bearings_csv(numbered([mission(FOX)[0], told]), {}))
+    read = known(read_bearing_file(tmp_path / "bearings.csv", None))
+    assert [(one.bearing_deg, one.place) for one in read.bearings] == [(told.bearing_deg, told.place)]
+
+
 def test_an_altitude_of_a_recording_is_known_without_a_home() -> None:
     recorded = numbered([mission(FOX)[0], by(ImportSource(recording_id="r1"), 1, 240.0)])
     assert [row[6:8] for row in rows(recorded)] == [["", "240.000"]]
@@ -141,6 +159,7 @@ def test_a_bearing_without_a_sweep_has_no_quality_and_the_time_at_which_it_was_t
     assert [told["quality"] for told in drawn] == [None, 0.9]
     remarks = [told.text or "" for event in cot_events(recorded) for told in event.iter("remarks")]
     assert ["quality" in remark for remark in remarks] == [False, True]
+    assert [row[3] for row in rows(recorded)] == ["", "0.900000"]
     assert rows(recorded)[0][8:] == ["1700000000.000000"] * 2
     assert [told["at_utc"] for told in drawn] == ["2023-11-14T22:13:20+00:00", recorded[2].at_utc.isoformat()]
 
