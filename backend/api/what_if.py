@@ -151,7 +151,8 @@ def _is_belief_about(one: Recorded, emitter_id: str | None) -> bool:
 
 def changed(mission: MissionSpec, wanted: Supposition) -> MissionSpec:
     """The specification with what is wanted otherwise; fields that are None stay."""
-    sensor = {name: getattr(wanted, name) for name in ("sigma_deg", "outlier_probability", "bearing_errors")}
+    of_sensor = ("sigma_deg", "outlier_probability", "bearing_errors", "sweep_evidence")
+    sensor = {name: getattr(wanted, name) for name in of_sensor}
     planner = {name: getattr(wanted, name) for name in ("method", "base_policy", "selection", "estimator", "budget")}
     return mission.model_copy(
         update={

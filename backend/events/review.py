@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, StringConstraints
 
 from backend.events.fact import Fact
-from backend.spec import ErrorModel, Id, Model, Place
+from backend.spec import ErrorModel, Id, Model, Place, SweepEvidence
 from planner.options import BasePolicy, DiscreteSelection, Estimator, Method
 
 Tag = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^\x00-\x1f]*$")]
@@ -65,9 +65,9 @@ class Supposition(Model):
     """What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
 
     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
-    taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
-    stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
-    decision.
+    taken and those the planner expects. sweep_evidence: of joint errors, as in SensorSpec. pattern, offset_to_nose_deg
+    (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
+    bearings stay. budget: simulated flights a decision.
     """
 
     emitter_id: Id | None = None
@@ -75,6 +75,7 @@ class Supposition(Model):
     sigma_deg: float | None = Field(default=None, ge=0.1, le=60)
     outlier_probability: float | None = Field(default=None, ge=0, le=0.5)
     bearing_errors: ErrorModel | None = None
+    sweep_evidence: SweepEvidence | None = None
     pattern: PatternUpload | None = None
     offset_to_nose_deg: float | None = Field(default=None, ge=-360, le=360, allow_inf_nan=False)
     method: Method | None = None

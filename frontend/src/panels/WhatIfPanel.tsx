@@ -161,14 +161,10 @@ function Antenna() {
 async function supposition(): Promise<Supposition> {
   const share = typed(outliers.value);
   return {
-    emitter_id: null,
     sigma_deg: typed(sigma.value),
     outlier_probability: share === null ? null : share / 100,
     offset_to_nose_deg: typed(mounting.value),
     pattern: pattern.value && { filename: pattern.value.name, text: await pattern.value.text() },
-    method: null,
-    base_policy: null,
-    selection: null,
     ...PLANNERS[planner.value],
     ...furtherWishes(),
   };

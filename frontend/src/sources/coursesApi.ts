@@ -6,7 +6,8 @@ type Schemas = components["schemas"];
 export type MissionCourses = Schemas["MissionCourses"];
 export type Course = Schemas["Course"];
 export type CoursePoint = Schemas["CoursePoint"];
-export type Supposition = Schemas["Supposition"];
+/** What is not named is as it was flown. */
+export type Supposition = Partial<Schemas["Supposition"]>;
 
 const variant = (id: string, name: string) => `/missions/${encodeURIComponent(id)}/variants/${encodeURIComponent(name)}`;
 

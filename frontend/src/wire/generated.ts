@@ -8537,9 +8537,9 @@ export interface components {
          * @description What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
          *
          *     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
-         *     taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
-         *     stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
-         *     decision.
+         *     taken and those the planner expects. sweep_evidence: of joint errors, as in SensorSpec. pattern, offset_to_nose_deg
+         *     (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
+         *     bearings stay. budget: simulated flights a decision.
          */
         Supposition: {
             emitter_id: string | null;
@@ -8547,6 +8547,7 @@ export interface components {
             sigma_deg: number | null;
             outlier_probability: number | null;
             bearing_errors: ("independent" | "joint") | null;
+            sweep_evidence: ("peak" | "whole") | null;
             pattern: components["schemas"]["PatternUpload"] | null;
             offset_to_nose_deg: number | null;
             method: ("rollout" | "base_policy") | null;
@@ -8559,9 +8560,9 @@ export interface components {
          * @description What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
          *
          *     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
-         *     taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
-         *     stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
-         *     decision.
+         *     taken and those the planner expects. sweep_evidence: of joint errors, as in SensorSpec. pattern, offset_to_nose_deg
+         *     (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
+         *     bearings stay. budget: simulated flights a decision.
          */
         SuppositionInput: {
             emitter_id?: string | null;
@@ -8569,6 +8570,7 @@ export interface components {
             sigma_deg?: number | null;
             outlier_probability?: number | null;
             bearing_errors?: ("independent" | "joint") | null;
+            sweep_evidence?: ("peak" | "whole") | null;
             pattern?: components["schemas"]["PatternUpload"] | null;
             offset_to_nose_deg?: number | null;
             method?: ("rollout" | "base_policy") | null;
@@ -9603,6 +9605,7 @@ export interface components {
             sigma_deg?: number | null;
             outlier_probability?: number | null;
             bearing_errors?: ("independent" | "joint") | null;
+            sweep_evidence?: ("peak" | "whole") | null;
             pattern?: components["schemas"]["PatternUpload"] | null;
             offset_to_nose_deg?: number | null;
             method?: ("rollout" | "base_policy") | null;

@@ -71,7 +71,8 @@ export type ExpectedTime = Schemas["ExpectedTime"];
 export type Preview = Schemas["Preview"];
 export type AntennaReview = Schemas["AntennaReview"];
 export type WhatIf = Schemas["WhatIf"];
-export type WhatIfRequest = Schemas["WhatIfRequest"];
+/** What is not named is as it was flown. */
+export type WhatIfRequest = Partial<Schemas["WhatIfRequest"]> & Pick<Schemas["WhatIfRequest"], "bearings">;
 export type SearchArea = Schemas["SearchArea"];
 export type AreaOutlook = Schemas["AreaOutlook"];
 export type AreaImport = Schemas["AreaImport"];
