@@ -49,8 +49,8 @@ ACCURACY_SIGMAS = 1.5
 
 def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str) -> Lesson | None:
     """Of a mission that has flown, from the emitter of which the craft took most bearings, one whose place was told
-    before all others: one bias turned them all, so that two emitters are not two witnesses. None when the craft took
-    none or errors were taken to be independent.
+    before all others: one bias turned them all, so that two emitters are not two witnesses. One that moves teaches
+    nothing. None when the craft took none of another or errors were taken to be independent.
 
     Heavy (some tenths of a second): call it off the event loop.
     """
@@ -59,7 +59,8 @@ def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str
     def taken(emitter_id: str) -> list[BearingMeasured]:
         return [b for b in search.emitters[emitter_id].bearings if source_name(b.source) == source]
 
-    heard = [name for name in search.emitters if name in task.emitters and taken(name)]
+    teaching = [name for name, each in task.emitters.items() if isinstance(each.prior, JointBelief)]
+    heard = [name for name in search.emitters if name in teaching and taken(name)]
     most = max(heard, key=lambda name: (found_at(search.emitters[name]) is not None, len(taken(name))), default=None)
     if most is None:
         return None

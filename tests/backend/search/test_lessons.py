@@ -18,7 +18,7 @@ from backend.search.planning import foreseen
 from backend.search.source_priors import prior_in, priors_of
 from backend.search.state import SearchState
 from backend.search.task import search_task
-from backend.spec import FIRST_EMITTER, LearnedErrors, MissionSpec, SensorSpec
+from backend.spec import FIRST_EMITTER, EmitterSpec, LearnedErrors, MissionSpec, MovementSpec, SensorSpec
 from hardware.frame import LocalFrame
 from hardware.reasons.antenna import AntennaAgrees
 
@@ -73,6 +73,25 @@ def test_a_flight_tells_its_bias_clockwise() -> None:
     assert found.bearings == 6
     assert found.bias_deg == pytest.approx(7.0, abs=1.5)
     assert 0.0 < found.bias_std_error_deg < 2.5
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_one_that_moved_does_not_keep_the_other_from_teaching(found: bool) -> None:
+    """Its place was told, or most bearings were of it."""
+    hare = EmitterSpec(emitter_id="hare", movement=MovementSpec(kind="animal"))
+    spec = mission().model_copy(update={"emitters": [hare, EmitterSpec(emitter_id="still")]})
+    chased = tuple(one.model_copy(update={"emitter_id": "hare"}) for one in bearings(20.0))
+    truth = TruthNoted(emitter_id="hare", place=HOME, accuracy_m=5.0, how="map", by="x") if found else None
+    states = {
+        "hare": EmitterState("hare", chased, truth=truth),
+        "still": EmitterState(
+            "still", tuple(one.model_copy(update={"emitter_id": "still"}) for one in bearings(7.0, 5))
+        ),
+    }
+    told = lesson("m1", search_task(spec, HOME, 0.0), SearchState(spec=spec, emitters=states), FIRST_CRAFT)
+    assert told is not None
+    assert (told.bearings, told.place_known) == (5, False)
+    assert told.bias_deg == pytest.approx(7.0, abs=2.0)
 
 
 def test_flights_of_a_right_compass_narrow_what_the_next_expects_and_never_exclude_anything() -> None:
