@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import count
 
@@ -59,7 +59,8 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, 
     for one in heard:
         refuse_far(one.place, mission)
     sure = _with_sigmas(heard, mission, state.home or corner_of(mission.area))
-    before = [_told_before(one, state.emitters[emitter.emitter_id].measured) for one in heard]
+    measured, stations = state.emitters[emitter.emitter_id].measured, {one.tag for one in recording.bearings}
+    before = [_told_before(one, stations - {one.tag}, measured) for one in heard]
     if (known := sum(told is not None for told in before)) > 0:
         remarks.append(KindLeftOut("known_bearing", known))
     sources = _sources(upload, heard, before)
@@ -94,11 +95,15 @@ def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:
     return one.frequency_hz is None or same_channel(emitter, one.frequency_hz)
 
 
-def _told_before(one: RecordedBearing, measured: Sequence[BearingMeasured]) -> BearingMeasured | None:
-    """The same one, reported by its station or out of another file."""
+def _told_before(
+    one: RecordedBearing, others: Collection[str | None], measured: Sequence[BearingMeasured]
+) -> BearingMeasured | None:
+    """The same one, reported by its station or out of another file. others: stations of its log, whose are not it."""
     for fact in measured:
         if one.live_id is not None and fact.bearing_id == one.live_id:
             return fact
+        if isinstance(fact.source, PersonSource) and fact.source.name in others:
+            continue
         if one.at_s is None or fact.taken_at_s is None or abs(fact.taken_at_s - one.at_s) > SAME_S:
             continue
         off_deg = math.remainder(fact.bearing_deg - one.bearing_deg, 360.0)

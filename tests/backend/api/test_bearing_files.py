@@ -130,6 +130,16 @@ async def test_a_log_that_went_on_brings_what_is_new(client, services):
     assert await known_of(services, mission_id) == [[], [3], [3]]
 
 
+async def test_what_another_station_heard_at_the_same_time_is_another_bearing(client, services):
+    mission_id = await draft(client)
+    roof, van = kraken(), kraken().replace("roof", "van")
+    for log in ("\n".join([roof, van.splitlines()[0]]), "\n".join([roof, van])):
+        assert (await bring(client, mission_id, log)).status_code == 201
+    bearings = await facts(services, mission_id, "bearing_measured")
+    assert [one.source.name for one in bearings] == ["roof"] * 4 + ["van"] * 4
+    assert await known_of(services, mission_id) == [[], [5]]
+
+
 async def test_bearings_of_another_time_place_or_direction_are_others(client, services):
     mission_id = await draft(client)
     first = kraken().splitlines()[0]
