@@ -188,9 +188,10 @@ def foreseen_to_plan(
     """What is foreseen of the bearings to come, those of legs where the craft turns at no place. It turns at the first
     one: until then all are foreseen as turns, so that a preview says rather too much. looks: as `foreseen`."""
     found = foreseen(problem, measured, belief, looks)
-    if found.legs is None or not any(isinstance(fact.source, CraftSource) for fact in measured):
+    flown = [fact.source for fact in measured if isinstance(fact.source, CraftSource)]
+    if found.legs is None or not flown:
         return replace(found, legs=None)
-    errors = belief.errors_of(source_name(measured[-1].source)) if isinstance(belief, JointBelief) else None
+    errors = belief.errors_of(source_name(flown[-1])) if isinstance(belief, JointBelief) else None
     if errors is not None:
         sigma = math.hypot(errors.scale * found.legs.sigma, errors.bias_sd)
         found = replace(found, legs=replace(found.legs, sigma=sigma))
@@ -200,7 +201,8 @@ def foreseen_to_plan(
 def foreseen(
     problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief | None = None, looks: int = 1
 ) -> Problem:
-    """The problem with the sensor as this mission found it, for the bearings to come.
+    """The problem with the sensor as this mission found it, for the bearings to come: those of the craft that measured
+    last. What others told, and how well, says nothing of them.
 
     sigma = (sigma_specified^k prod_i sigma_i)^(1/(n+k)), k = SPECIFIED_COUNTS: a geometric mean, since sigma is a
     scale: one bad sweep in a good signal does not undo the others. The measurement time is the arithmetic mean, since
@@ -209,34 +211,38 @@ def foreseen(
     bias by as much as it is still uncertain. Before the first bearing it is what earlier flights make of the specified
     sigma. looks: how many turns a place is worth after the first one; they share the bias.
     """
-    sigmas = [math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0]
-    sigma = _with_errors(geometric_mean([problem.sigma] * SPECIFIED_COUNTS + sigmas), measured, belief, looks)
-    times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
     flown = (fact.source for fact in reversed(measured) if isinstance(fact.source, CraftSource))
-    next_source = source_name(next(flown, CraftSource(craft_id=FIRST_CRAFT)))
+    craft = next(flown, CraftSource(craft_id=FIRST_CRAFT))
+    own, next_source = [fact for fact in measured if fact.source == craft], source_name(craft)
+    sigmas = [math.radians(fact.sigma_deg) for fact in own if fact.sigma_deg > 0.0]
+    sigma = geometric_mean([problem.sigma] * SPECIFIED_COUNTS + sigmas)
+    sigma = _with_errors(sigma, own, next_source, belief, looks)
+    times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
     return replace(problem, sigma=sigma, measurement_time=fmean(times), next_source=next_source)
 
 
-def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None, looks: int) -> float:
-    """sigma_foreseen = hypot(scale sigma_own / sqrt(looks), bias' standard deviation), of the source that measured
-    last; rad."""
+def _with_errors(
+    sigma: float, own: Sequence[BearingMeasured], source: str, belief: GridBelief | None, looks: int
+) -> float:
+    """sigma_foreseen = hypot(scale sigma_own / sqrt(looks), bias' standard deviation), of the source that took `own`
+    and measures next; rad."""
     if isinstance(belief, MovingBelief):
-        return _worn(sigma, measured, belief)
+        return _worn(sigma, own, belief)
     if not isinstance(belief, JointBelief):
         return sigma
-    if not measured:
+    if not own:
         return sigma * _learned_share(sigma, belief)
-    errors = belief.errors_of(source_name(measured[-1].source))
+    errors = belief.errors_of(source)
     if errors is None:
         return sigma
-    shares = [max(own_sigma_deg(fact), math.degrees(SMALLEST_SIGMA)) / max(fact.sigma_deg, 1e-3) for fact in measured]
+    shares = [max(own_sigma_deg(fact), math.degrees(SMALLEST_SIGMA)) / max(fact.sigma_deg, 1e-3) for fact in own]
     return math.hypot(errors.scale * sigma * geometric_mean(shares) / math.sqrt(looks), errors.bias_sd)
 
 
-def _worn(sigma: float, measured: Sequence[BearingMeasured], belief: MovingBelief) -> float:
+def _worn(sigma: float, own: Sequence[BearingMeasured], belief: MovingBelief) -> float:
     """Of an emitter that moves. A rollout's belief stands still, so its bearings count for what they are worth one
     bearing later: sigma_foreseen^2 = sigma^2 + var(way in one step) / r^2."""
-    spent = [t for fact in measured if (t := fact.measurement_time_s) is not None]
+    spent = [t for fact in own if (t := fact.measurement_time_s) is not None]
     step_s = FLIGHT_S + (fmean(spent) if spent else MEASURING_S)
     return math.hypot(sigma, math.sqrt(float(belief.assumed.movement.variance(step_s))) / WORN_FROM_M)
 

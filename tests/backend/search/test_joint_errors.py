@@ -213,6 +213,18 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
     assert own[1] == pytest.approx(own[0] / math.sqrt(2.0))
 
 
+def test_what_a_person_errs_by_says_nothing_of_the_craft_that_measures_next() -> None:
+    seen = turned(5.0)
+    last, first = seen[-1], seen[:-1]
+    told = last.model_copy(
+        update={"source": PersonSource(name="Ada"), "bearing_deg": (last.bearing_deg + 60.0) % 360.0, "sigma_deg": 20.0}
+    )
+    of_others = JOINT.planning_belief(JOINT.planner_bearings([*first, told]))
+    assert foreseen(JOINT.problem, [*first, told], of_others).sigma == foreseen(JOINT.problem, first, of_others).sigma
+    only_told = JOINT.planning_belief(JOINT.planner_bearings([told]))
+    assert foreseen(JOINT.problem, [told], only_told).sigma == pytest.approx(JOINT.problem.sigma)
+
+
 def test_a_specification_of_before_has_the_priors_of_before() -> None:
     """Outliers were taken to be half or twice as frequent as specified."""
     for specified, rates in ((0.1, [0.05, 0.2]), (0.5, [0.25, 0.6]), (0.0, [0.01])):

@@ -155,6 +155,8 @@ def test_the_bearings_to_come_are_the_crafts_whoever_took_those_that_came() -> N
 
     assert foreseen(problem, [told]).next_source != source_name(told.source)
     assert foreseen(problem, [flown, told]).next_source == source_name(flown.source)
+    vague = told.model_copy(update={"sigma_deg": 15.0})
+    assert foreseen(problem, [flown, vague, vague]).sigma == foreseen(problem, [flown]).sigma
 
 
 def test_measurements_to_come_are_expected_to_take_as_long_as_those_that_were_flown() -> None:
