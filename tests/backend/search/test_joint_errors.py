@@ -196,7 +196,11 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
     seen = turned(5.0)
     first = foreseen_for(swinging, (), JOINT.prior).sigma
     assert first == pytest.approx(JOINT.problem.sigma)
-    assert foreseen_for(JOINT, (), JOINT.prior).sigma == ECHOES_AHEAD * first
+    never_stopping = task(
+        bearing_errors="joint", listen_on_the_way=True, swing_on_the_way=True, sector_turns=True, never_stop=True
+    )
+    for not_both in (JOINT, never_stopping):
+        assert foreseen_for(not_both, (), JOINT.prior).sigma == ECHOES_AHEAD * first
     for measured in (seen[:1], seen):
         belief = JOINT.planning_belief(JOINT.planner_bearings(measured))
         turn, place = (foreseen_for(one, measured, belief).sigma for one in (JOINT, swinging))
