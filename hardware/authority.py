@@ -13,11 +13,18 @@ from typing import Literal, assert_never
 Who = Literal["ours", "pilot", "failsafe", "nobody"]
 ModeKind = Literal["waiting", "return", "land", "other"]
 """waiting: the vehicle hovers until it is commanded. return, land: a failsafe may enter it by itself, a pilot too."""
+FailsafeCause = Literal["battery", "transmitter", "position", "fence", "silence", "other"]
+"""Why a failsafe acts, by the autopilot's own word. transmitter: the pilot's is not heard; silence: nothing of ours."""
 
 HOMEWARD: frozenset[ModeKind] = frozenset({"return", "land"})
 GIVEN_BACK_S = 1.5
 """A mode is the pilot's way to give the vehicle back only when heard this much later than the takeover: PX4 reports the
 sticks before it reports the mode."""
+NAMED_S = 1.0
+"""A way home that begins so shortly before or after the autopilot names a failsafe is that failsafe's. It says both in
+one turn of its loop; a mode that got lost on the link is told again within half a second."""
+ACTS_S = 2.5
+"""So long after a way home has begun its state may still tell whose that is: it comes once a second, or gets lost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +36,8 @@ class Authority:
     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
+    cause: of the failsafe that flies, where the autopilot said it; before it flies: what it named last. named_at_s:
+    when.
     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
     given nothing back.
@@ -46,6 +55,8 @@ class Authority:
     given_back: bool = False
     perhaps_failsafe: bool = False
     failsafe_landed: bool = False
+    cause: FailsafeCause | None = None
+    named_at_s: float | None = None
     under_way: tuple[int, ...] = ()
     undone: bool = False
     commanded: tuple[int, ...] = ()
@@ -83,7 +94,8 @@ class ModeHeard:
     """The autopilot reported its mode.
 
     mode: the token; name: for people. armed: None while it is not known since a silence. after_silence: the vehicle, or
-    this server, was silent until a moment ago, so a failsafe may be acting on that. at_s: UTC.
+    this server, was silent until a moment ago, so a failsafe may be acting on that. at_s: UTC. acts: whether this mode
+    is a failsafe's choice, by the autopilot's own word; None: it does not say.
     """
 
     mode: int
@@ -93,6 +105,7 @@ class ModeHeard:
     in_air: bool
     after_silence: bool
     at_s: float
+    acts: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +120,14 @@ class SwitchMoved:
     """The pilot has moved their mode switch, and a moment later the mode is `mode`. at_s: UTC."""
 
     mode: str
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class FailsafeNamed:
+    """The autopilot says that a failsafe of its own acts, and why; it may only warn all the same. at_s: UTC."""
+
+    cause: FailsafeCause
     at_s: float
 
 
@@ -131,6 +152,7 @@ Seen = (
     | ModeHeard
     | SticksTookOver
     | SwitchMoved
+    | FailsafeNamed
     | FlightEnded
     | OperatorTookControl
     | ServerRestarted
@@ -150,6 +172,8 @@ def authority_after(authority: Authority, seen: Seen) -> Authority:
             return _taken(authority, "pilot", "sticks", at_s, None) if authority.armed else authority
         case SwitchMoved():
             return _switch_moved(authority, seen)
+        case FailsafeNamed():
+            return _failsafe_named(authority, seen)
         case FlightEnded():
             return _nothing_commanded(authority)
         case OperatorTookControl():
@@ -226,13 +250,49 @@ def _judged(before: Authority, now: Authority, seen: ModeHeard) -> Authority:
         return now
     if waiting and before.restarted:
         return _nothing_commanded(now)  # the last command of the server before may not have been recorded
-    who: Who = "failsafe" if seen.kind in HOMEWARD and seen.after_silence else "pilot"
-    return _taken(now, who, "mode", seen.at_s, seen)
+    return _taken(now, "failsafe" if _is_failsafes(now, seen) else "pilot", "mode", seen.at_s, seen)
+
+
+def _is_failsafes(now: Authority, seen: ModeHeard) -> bool:
+    """Is this way home, which nobody commanded, the autopilot's own?"""
+    if seen.kind not in HOMEWARD:
+        return False
+    return seen.after_silence or bool(seen.acts) or (seen.acts is None and _named_lately(now, seen.at_s))
+
+
+def _named_lately(authority: Authority, at_s: float) -> bool:
+    return authority.named_at_s is not None and 0.0 <= at_s - authority.named_at_s <= NAMED_S
+
+
+def _failsafe_named(authority: Authority, seen: FailsafeNamed) -> Authority:
+    """Only a way home that began in the same moment becomes the failsafe's; a pilot keeps what they had before."""
+    if not authority.armed:
+        return authority
+    if authority.who == "pilot":
+        begun = authority.perhaps_failsafe and authority.homeward and _began_lately(authority, seen.at_s, NAMED_S)
+        return _failsafes(authority, seen.cause) if begun and not authority.undone else authority
+    if authority.who == "failsafe":
+        known = seen.cause == "other" and authority.cause is not None
+        return authority if known else replace(authority, cause=seen.cause)
+    return replace(authority, cause=seen.cause, named_at_s=seen.at_s)
+
+
+def _began_lately(authority: Authority, at_s: float, within_s: float) -> bool:
+    return 0.0 <= at_s - (authority.taken_at_s or 0.0) <= within_s
+
+
+def _failsafes(authority: Authority, cause: FailsafeCause) -> Authority:
+    """What counted as a pilot's until now."""
+    return replace(authority, who="failsafe", perhaps_failsafe=False, given_back=False, cause=cause)
 
 
 def _taken(
     authority: Authority, who: Who, by: Literal["mode", "sticks"], at_s: float, heard: ModeHeard | None
 ) -> Authority:
+    cause = None
+    if who == "failsafe" and heard is not None:
+        named = _named_lately(authority, at_s)
+        cause = authority.cause if named else "other" if heard.acts and not heard.after_silence else None
     return replace(
         _nothing_commanded(authority),
         who=who,
@@ -243,13 +303,21 @@ def _taken(
         under_way=authority.commanded if authority.tolerated else (),
         undone=False,
         failsafe_landed=False,
-        perhaps_failsafe=who == "pilot" and heard is not None and heard.kind in HOMEWARD,
+        cause=cause,
+        named_at_s=None,
+        perhaps_failsafe=who == "pilot" and heard is not None and heard.kind in HOMEWARD and heard.acts is None,
     )
 
 
 def _switch_moved(authority: Authority, seen: SwitchMoved) -> Authority:
-    """Whoever moves the switch wants the vehicle; a mode of ours that still shows has undone it."""
-    if authority.who != "ours" or not authority.armed:
+    """Whoever moves the switch wants the vehicle; a mode of ours that still shows has undone it. Of a transmitter that
+    is lost it moves by itself."""
+    if not authority.armed:
+        return authority
+    if authority.who == "pilot":
+        return replace(authority, perhaps_failsafe=False)
+    named = authority.who == "failsafe" and authority.cause not in (None, "silence", "transmitter")
+    if authority.who != "ours" and not named:
         return authority
     taken = _taken(authority, "pilot", "mode", seen.at_s, None)
     return replace(taken, mode=seen.mode, undone=authority.heard in authority.commanded)
@@ -267,16 +335,28 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
     if before.who == "failsafe":
         if not seen.in_air or (waiting and seen.mode == before.heard and not seen.after_silence):
             return now
-        if homeward or (waiting and seen.after_silence):
-            # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command
+        if homeward and seen.acts is False and before.cause is not None and not seen.after_silence:
+            return _taken(now, "pilot", "mode", seen.at_s, seen)  # they selected what the failsafe flew
+        if homeward or (waiting and (seen.after_silence or before.cause == "position")):
+            # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command,
+            # and PX4 waits again once it knows its place
             return replace(now, mode=seen.name, given_back=waiting)
         return _taken(now, "pilot", "mode", seen.at_s, seen)
     late = seen.at_s >= (now.taken_at_s or 0.0) + GIVEN_BACK_S
     again = seen.mode == before.heard
     undone = before.undone if again else seen.mode in before.under_way and not late
+    if seen.acts and homeward and now.perhaps_failsafe and not undone and _began_lately(now, seen.at_s, ACTS_S):
+        return replace(_failsafes(now, "other"), mode=seen.name, undone=False)
     return replace(
         now,
         undone=undone,
         given_back=waiting and late and not undone,
-        perhaps_failsafe=before.perhaps_failsafe and (homeward or waiting or not seen.in_air),
+        perhaps_failsafe=before.perhaps_failsafe and _doubt_stays(seen),
     )
+
+
+def _doubt_stays(seen: ModeHeard) -> bool:
+    """Whether a mode may still be the failsafe's doing."""
+    if not seen.in_air or seen.kind == "waiting":
+        return True
+    return seen.kind in HOMEWARD and seen.acts is not False

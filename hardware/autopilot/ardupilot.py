@@ -12,6 +12,7 @@ from hardware.autopilot.dialect import (
     NetRules,
     OwnFence,
 )
+from hardware.autopilot.failsafe_names import FailsafeText, FailsafeWords
 from hardware.autopilot.messages import HEARTBEAT_ID, TAKE_OFF, Outgoing, command_long, set_mode
 from hardware.autopilot.opening import STATION_SYSTEM
 from hardware.reasons.vehicle import CommandName
@@ -76,6 +77,19 @@ ARDUPILOT = Dialect(
     returning_modes=frozenset({RTL, SMART_RTL, AUTO_RTL}),
     landing_modes=frozenset({LAND}),
     takeover_text=None,
+    failsafe_words=FailsafeWords(
+        (
+            FailsafeText("Battery Failsafe", "battery"),
+            FailsafeText("Radio Failsafe", "transmitter"),
+            FailsafeText("GCS Failsafe", "silence"),
+            FailsafeText("EKF Failsafe: changed to ", "position", ends=" Mode"),
+            FailsafeText("Dead Reckoning started", "position"),
+            FailsafeText("Failsafe: Terrain data missing", "other"),
+            FailsafeText("", "fence", ends=" fence breached"),
+            FailsafeText("", "fence", ends=" fences breached"),
+        )
+    ),
+    state_tells_failsafe=False,
     place_refused_texts=(),
     hold=(set_mode((BRAKE, 0)),) * 3,
     hold_modes=frozenset({BRAKE}),

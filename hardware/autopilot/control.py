@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from hardware.authority import NOBODY, Authority, Seen, ServerRestarted, authority_after
+from hardware.authority import NOBODY, Authority, FailsafeCause, FailsafeNamed, Seen, ServerRestarted, authority_after
 
 
 class Control:
@@ -22,6 +22,11 @@ class Control:
     def see(self, seen: Seen) -> None:
         """Fold what the vehicle showed or somebody did; `changed` is called before this returns."""
         self._become(authority_after(self.authority, seen))
+
+    def named(self, cause: FailsafeCause | None, at_s: float) -> None:
+        """Why a failsafe acts, as the autopilot has just said; None: it said nothing of the kind."""
+        if cause is not None:
+            self.see(FailsafeNamed(cause, at_s))
 
     def restore(self, authority: Authority) -> None:
         """Go on from what was known before the server restarted."""

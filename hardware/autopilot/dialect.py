@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hardware.authority import ModeKind
+from hardware.autopilot.failsafe_names import FailsafeWords
 from hardware.autopilot.messages import Outgoing
 from hardware.reasons.preflight import FailsafeWatch
 from hardware.reasons.vehicle import CommandName
@@ -84,6 +85,7 @@ class NetRules:
     most_corners: int
 
 
+_CRITICAL = 5  # MAV_STATE
 TurnMethod = Literal["yaw_steps", "nudged_yaw_steps", "condition_yaw", "condition_yaw_absolute"]
 YawMethod = Literal["reposition", "condition_yaw"]
 
@@ -94,6 +96,8 @@ class Dialect:
 
     waiting_modes: raw modes in which a flying vehicle waits for commands. returning_modes, landing_modes: those that a
     failsafe may enter by itself. takeover_text: the beginning of the text by which the autopilot reports the sticks.
+    failsafe_words: how it names a failsafe of its own. state_tells_failsafe: the state in its heartbeat is critical
+    while one has chosen the mode, and active as soon as a pilot has; ArduCopter's stays critical.
     mode_report: the message that tells the mode, and how often to ask for it (Hz). Both autopilots send it at once when
     the mode has changed; when that is lost the next one tells it. PX4 sends CURRENT_MODE at most so often, and twice a
     second when nothing changed: a fast rate costs nothing and shows a mode that lasted for an instant. ArduCopter 4.7
@@ -123,6 +127,8 @@ class Dialect:
     returning_modes: frozenset[int]
     landing_modes: frozenset[int]
     takeover_text: str | None
+    failsafe_words: FailsafeWords
+    state_tells_failsafe: bool
     place_refused_texts: tuple[str, ...]
     hold: tuple[Outgoing, ...]
     hold_modes: frozenset[int]
@@ -148,6 +154,10 @@ class Dialect:
     def station_time(self) -> str:
         """The parameter that says for how long a station is silent before the autopilot acts on that."""
         return next(rule.parameter for rule in self.failsafes if rule.watch == "station_time")
+
+    def failsafe_acts(self, state: int | None) -> bool | None:
+        """Whether a failsafe has chosen the mode; state: MAV_STATE of the heartbeat that tells it. None: not said."""
+        return state >= _CRITICAL if state is not None and self.state_tells_failsafe else None
 
     def mode_name(self, custom_mode: int) -> str:
         """As pilots know it; "mode N" for one that this dialect does not name."""

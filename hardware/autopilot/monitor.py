@@ -16,6 +16,7 @@ from hardware.autopilot.boot_clock import LastingOddity
 from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import STATION_NOTICED_LOST_S, Dialect
+from hardware.autopilot.failsafe_names import FailsafeNames
 from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.messages import (
     HEARTBEAT_ID,
@@ -92,11 +93,12 @@ class Monitor:
 
     def __init__(self, url: str, clock: Clock, opened: Connection | None = None) -> None:
         self.clock = clock
-        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", "RC_CHANNELS", ARM_STATUS)
+        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "EVENT", "TIMESYNC", "PING", "RC_CHANNELS", ARM_STATUS)
         self.link = MavlinkLink(url, listened, self._on_message, opened)
         self.snapshot = Snapshot()
         self.remote_id = RemoteId()
         self._texts = StatusTexts()
+        self._failsafe_names = FailsafeNames()
         self._said: deque[tuple[float, str]] = deque(maxlen=SAID_KEPT)
         self.wakeup = Wakeup()
         self.connected = False
@@ -272,6 +274,8 @@ class Monitor:
             self.timesync.came_back(fields, now)
         elif name == "STATUSTEXT":
             self._on_text(fields, now)
+        elif name == "EVENT" and self._dialect is not None:
+            self.control.named(self._failsafe_names.event(self._dialect.failsafe_words, fields, now), now)
         elif name == "RC_CHANNELS":
             self.mode_switch.see(fields, now)
         elif name == ARM_STATUS:
@@ -283,7 +287,7 @@ class Monitor:
             if name == "GLOBAL_POSITION_INT" and self.snapshot.jumped_m is not None:
                 self.announce(PositionJumped(self.snapshot.jumped_m))
             if name in ("HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE"):
-                self._on_mode()
+                self._on_mode(fields.get("system_status"))
         self.wakeup.wake()
 
     async def mode_heard(self, longest_s: float = MODE_S) -> None:
@@ -294,9 +298,11 @@ class Monitor:
 
     def _on_text(self, fields: Fields, now_s: float) -> None:
         text, chunk = str(fields["text"]), int(fields.get("chunk_seq", 0))
-        takeover = None if self._dialect is None else self._dialect.takeover_text
-        if takeover is not None and chunk == 0 and text.startswith(takeover):
-            self.control.see(SticksTookOver(now_s))
+        dialect = self._dialect
+        if dialect is not None and chunk == 0:
+            if dialect.takeover_text and text.startswith(dialect.takeover_text):
+                self.control.see(SticksTookOver(now_s))
+            self.control.named(self._failsafe_names.text(dialect.failsafe_words, text, now_s), now_s)
         for whole in self._texts.take(int(fields["severity"]), text, int(fields.get("id", 0)), chunk, now_s):
             self._say(whole, now_s)
 
@@ -311,7 +317,8 @@ class Monitor:
         """The autopilot's warnings and errors from then on, each once, oldest first."""
         return list(dict.fromkeys(text for said_at_s, text in self._said if said_at_s >= at_s))
 
-    def _on_mode(self) -> None:
+    def _on_mode(self, state: int | None = None) -> None:
+        """state: MAV_STATE of the heartbeat that told the mode, if one did."""
         snapshot = self.snapshot
         mode = snapshot.custom_mode
         if mode is None or snapshot.armed is None or self._dialect is None:
@@ -330,6 +337,7 @@ class Monitor:
                 in_air=bool(snapshot.in_air),
                 after_silence=self._after_silence.look() or not self.connected,
                 at_s=snapshot.mode_at_s or self.clock.now(),
+                acts=self._dialect.failsafe_acts(state),
             )
         )
 

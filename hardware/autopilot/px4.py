@@ -13,6 +13,7 @@ from hardware.autopilot.dialect import (
     NetRules,
     OwnFence,
 )
+from hardware.autopilot.failsafe_names import FailsafeEvent, FailsafeText, FailsafeWords
 from hardware.autopilot.messages import CURRENT_MODE_ID, TAKE_OFF, Outgoing, command_long, pause, pause_here, set_mode
 from hardware.reasons.vehicle import CommandName
 
@@ -81,6 +82,27 @@ PX4 = Dialect(
     returning_modes=frozenset({RETURNING}),
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),
     takeover_text="Pilot took over",
+    # a warning says "Failsafe activated", too; the numbers are those of commander_failsafe_enter and of its _hold and
+    # _generic forms (libevents: FNV-1a of the name), of failsafe_cause_t and of failsafe_action_t from "rtl" on
+    failsafe_words=FailsafeWords(
+        texts=(
+            FailsafeText("Failsafe activated", None, "acts_as_announced"),
+            FailsafeText("Failsafe activated: entering Hold for ", None, "will_act", ends=""),
+            FailsafeText("Geofence violation", "fence", "cause", ends=""),
+            FailsafeText("Critical battery", "battery", "cause"),
+            FailsafeText("Emergency battery level", "battery", "cause"),
+        ),
+        events={
+            0x94CA8A: FailsafeEvent(acts=True, cause_at=5),
+            0xDEDBD0: FailsafeEvent(acts=True),
+            0xC2DC72: FailsafeEvent(acts=True, cause="position"),  # "autopilot disengaged": what needs no position
+            0xD11DF6: FailsafeEvent(acts=False, cause_at=7),
+            0x44B3E0: FailsafeEvent(acts=False),
+        },
+        causes={1: "transmitter", 2: "silence", 3: "battery", 4: "battery", 5: "battery", 6: "battery"},
+        homeward_actions=frozenset({6, 7, 8}),
+    ),
+    state_tells_failsafe=True,
     place_refused_texts=("Reposition is outside geofence",),
     # twice without a mode: a slow PX4 that already holds is sent nothing that could undo a pilot
     hold=(pause_here(), pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),

@@ -12,9 +12,11 @@ from pydantic import TypeAdapter
 from hardware.authority import (
     GIVEN_BACK_S,
     HOMEWARD,
+    NAMED_S,
     Authority,
     CommandAcknowledged,
     CommandSent,
+    FailsafeNamed,
     FlightEnded,
     ModeHeard,
     ModeKind,
@@ -35,17 +37,28 @@ MODES = tuple(
     ModeHeard(mode, kind, f"mode {mode}", armed, in_air, after_silence, LATE_S)
     for (mode, kind), armed, in_air, after_silence in product(KINDS.items(), (None, *BOTH), BOTH, BOTH)
 )
+ACTING = tuple(
+    ModeHeard(mode, KINDS[mode], f"mode {mode}", True, in_air, after_silence, LATE_S, acts)
+    for mode, in_air, after_silence, acts in product((RETURN,), BOTH, BOTH, BOTH)
+)
+"""Of an autopilot that says with its mode whether a failsafe has chosen it."""
+NAMED = (
+    FailsafeNamed("position", LATE_S),
+    FailsafeNamed("transmitter", LATE_S + NAMED_S),
+    FailsafeNamed("battery", LATE_S + 2.0 * NAMED_S),
+)
 DEEDS: tuple[Seen, ...] = (
     *(CommandSent(frozenset(modes)) for modes in ({HOLD}, {HOLD, GUIDED}, {RETURN, LAND})),
     CommandAcknowledged(),
     SticksTookOver(EARLY_S),
     SticksTookOver(LATE_S),
     SwitchMoved("HOLD", LATE_S),
+    *NAMED,
     FlightEnded(),
     OperatorTookControl(),
     ServerRestarted(),
 )
-ALL: tuple[Seen, ...] = (*MODES, *DEEDS)
+ALL: tuple[Seen, ...] = (*MODES, *ACTING, *DEEDS)
 
 
 @cache
@@ -109,11 +122,33 @@ def test_what_begins_after_a_silence_on_the_way_home_is_never_told_as_a_pilots()
             assert before.who != "failsafe" or after.who != "pilot", (before, seen)
 
 
-def test_the_sticks_are_a_pilots_and_a_pilots_control_never_becomes_the_failsafes() -> None:
+def test_the_sticks_are_a_pilots_and_only_the_autopilot_ends_a_doubt_about_whose_a_way_home_is() -> None:
     for before, seen, after in steps():
         if isinstance(seen, SticksTookOver) and before.armed:
             assert (after.who, after.perhaps_failsafe, after.given_back) == ("pilot", False, False)
-        assert (before.who, after.who) != ("pilot", "failsafe"), (before, seen)
+        if (before.who, after.who) == ("pilot", "failsafe"):
+            named = isinstance(seen, FailsafeNamed) and seen.at_s <= LATE_S + NAMED_S
+            assert named or (isinstance(seen, ModeHeard) and seen.acts), (before, seen)
+            assert (before.perhaps_failsafe, before.taken_by) == (True, "mode"), (before, seen)
+            assert not named or not before.undone, (before, seen)
+            assert (after.homeward, after.armed) == (True, True), (before, seen)
+            assert after.cause is not None, (before, seen)
+
+
+def test_a_switch_that_moved_leaves_no_doubt_but_where_its_transmitter_is_lost() -> None:
+    for before, seen, after in steps():
+        if isinstance(seen, SwitchMoved) and before.armed:
+            assert not after.perhaps_failsafe, (before, seen)
+            heard = before.cause not in (None, "silence", "transmitter")
+            assert before.who != "failsafe" or (after.who == "pilot") == heard, (before, seen)
+
+
+def test_a_way_home_that_a_named_failsafe_did_not_choose_is_the_pilots() -> None:
+    """Where the autopilot says so; a link that was silent has its own rule."""
+    for before, seen, after in steps():
+        if isinstance(seen, ModeHeard) and seen.acts is False and seen.in_air and not seen.after_silence:
+            assert after.who != "failsafe" or after.cause is None, (before, seen)
+            assert not after.perhaps_failsafe, (before, seen)
 
 
 def test_control_is_given_back_only_when_the_vehicle_waits_or_stands() -> None:
@@ -126,7 +161,7 @@ def test_control_is_given_back_only_when_the_vehicle_waits_or_stands() -> None:
 def test_the_same_report_again_changes_nothing() -> None:
     """Ten reports a second make no ten facts."""
     for _, seen, after in steps():
-        if isinstance(seen, ModeHeard):
+        if isinstance(seen, ModeHeard | FailsafeNamed):
             assert authority_after(after, seen) == after, (after, seen)
 
 

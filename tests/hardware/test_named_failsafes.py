@@ -1,0 +1,194 @@
+"""Whose a way home is that nobody commanded, where the autopilot says that a failsafe of its own acts."""
+
+from __future__ import annotations
+
+import pytest
+from flown_craft import GUIDED, HOLD, KINDS, LAND, NAMES, POSCTL, RETURN, Craft, flying
+
+from hardware.authority import (
+    ACTS_S,
+    GIVEN_BACK_S,
+    NAMED_S,
+    Authority,
+    FailsafeCause,
+    FailsafeNamed,
+    ModeHeard,
+    OperatorTookControl,
+    ServerRestarted,
+    SticksTookOver,
+    SwitchMoved,
+)
+
+
+def named(craft: Craft, cause: FailsafeCause = "battery", later_s: float = 0.0) -> Authority:
+    craft.waits(later_s)
+    return craft.sees(FailsafeNamed(cause, craft.at_s))
+
+
+def says(craft: Craft, acts: bool, mode: int = RETURN, later_s: float = 0.5) -> Authority:
+    """The heartbeat of an autopilot whose state tells who chose its mode."""
+    craft.waits(later_s)
+    return craft.sees(ModeHeard(mode, KINDS[mode], NAMES[mode], True, True, False, craft.at_s, acts))
+
+
+@pytest.mark.parametrize("mode", [RETURN, LAND])
+@pytest.mark.parametrize("first", ["name", "mode"])
+def test_a_way_home_is_the_named_failsafes_whichever_is_heard_first(mode: int, first: str) -> None:
+    craft = flying(GUIDED)
+    if first == "name":
+        named(craft)
+        craft.hears(mode)
+    else:
+        craft.hears(mode)
+        named(craft)
+    now = craft.now
+    assert (now.who, now.cause, now.taken_by, now.perhaps_failsafe) == ("failsafe", "battery", "mode", False)
+    assert named(craft) == craft.now, "said again"
+    craft.hears(LAND)
+    landed = craft.on_ground(HOLD)
+    assert (landed.who, landed.failsafe_landed) == ("nobody", True)
+
+
+@pytest.mark.parametrize("first", ["name", "mode"])
+def test_a_way_home_long_before_or_after_a_warning_is_the_pilots(first: str) -> None:
+    craft = flying(GUIDED)
+    if first == "name":
+        named(craft)
+        craft.waits(NAMED_S)
+        craft.hears(RETURN)
+    else:
+        craft.hears(RETURN)
+        named(craft, later_s=NAMED_S + 0.1)
+    assert (craft.now.who, craft.now.cause, craft.now.perhaps_failsafe) == ("pilot", None, True)
+
+
+def test_a_failsafe_that_only_warns_takes_nothing_and_leaves_every_other_mode_to_the_pilot() -> None:
+    craft = flying(GUIDED)
+    assert named(craft).who == "ours"
+    assert craft.commands(HOLD).who == "ours"
+    craft = flying(GUIDED)
+    named(craft)
+    assert craft.hears(POSCTL).who == "pilot"
+    assert named(craft).who == "pilot"
+
+
+def test_a_pilot_keeps_what_they_had_before_the_failsafe_was_named() -> None:
+    craft = flying(GUIDED)
+    craft.hears(POSCTL)
+    named(craft)
+    assert craft.hears(RETURN).who == "pilot"
+    assert named(craft).who == "pilot"
+    craft = flying(GUIDED)
+    craft.sees(SticksTookOver(craft.at_s))
+    craft.hears(RETURN)
+    assert named(craft).who == "pilot"
+
+
+def test_a_switch_that_moved_is_the_pilots_before_with_and_after_the_failsafes_name() -> None:
+    before = flying(GUIDED)
+    before.sees(SwitchMoved("RETURN", before.at_s))
+    before.hears(RETURN)
+    assert named(before).who == "pilot"
+    between = flying(GUIDED)
+    between.hears(RETURN)
+    between.sees(SwitchMoved("RETURN", between.at_s))
+    assert named(between).who == "pilot"
+    after = flying(GUIDED)
+    named(after)
+    assert after.hears(RETURN).who == "failsafe"
+    taken = after.sees(SwitchMoved("RETURN", after.at_s))
+    assert (taken.who, taken.cause, taken.perhaps_failsafe) == ("pilot", None, False)
+    assert named(after).who == "pilot"
+
+
+@pytest.mark.parametrize("cause", ["transmitter", "silence"])
+def test_the_channel_of_a_transmitter_that_is_lost_tells_of_no_pilot(cause: FailsafeCause) -> None:
+    craft = flying(GUIDED)
+    named(craft, cause)
+    craft.hears(RETURN)
+    assert craft.sees(SwitchMoved("RETURN", craft.at_s)).who == "failsafe"
+    assert craft.hears(POSCTL).who == "pilot"
+
+
+def test_an_operator_takes_the_vehicle_from_a_named_failsafe_and_the_next_failsafe_may_act_again() -> None:
+    craft = flying(GUIDED)
+    named(craft)
+    craft.hears(RETURN)
+    taken = craft.sees(OperatorTookControl())
+    assert (taken.who, taken.cause, taken.named_at_s) == ("ours", None, None)
+    craft.commands(HOLD)
+    assert craft.hears(HOLD).who == "ours"
+    named(craft, "position", later_s=5.0)
+    second = craft.hears(LAND)
+    assert (second.who, second.cause) == ("failsafe", "position")
+    craft.sees(OperatorTookControl())
+    craft.commands(HOLD)
+    craft.hears(HOLD)
+    craft.waits(2.0 * NAMED_S)
+    assert craft.hears(RETURN).who == "pilot"
+
+
+def test_the_cause_named_last_counts_and_one_that_is_not_known_replaces_none() -> None:
+    craft = flying(GUIDED)
+    craft.hears(RETURN, after_silence=True)
+    assert craft.now.cause is None
+    assert named(craft, "other").cause == "other"
+    assert named(craft, "transmitter").cause == "transmitter"
+    assert named(craft, "other").cause == "transmitter"
+    assert named(craft, "battery").cause == "battery"
+
+
+def test_after_a_failsafe_for_its_place_it_may_wait_again_by_itself_after_others_a_pilot_holds() -> None:
+    craft = flying(HOLD)
+    named(craft, "position")
+    craft.hears(LAND)
+    craft.waits(GIVEN_BACK_S)
+    waits = craft.hears(HOLD)
+    assert (waits.who, waits.given_back) == ("failsafe", True)
+    craft = flying(HOLD)
+    named(craft, "battery")
+    craft.hears(LAND)
+    assert craft.hears(HOLD).who == "pilot"
+
+
+def test_an_undone_switch_stays_the_pilots() -> None:
+    craft = flying(GUIDED)
+    craft.commands(RETURN)
+    craft.hears(LAND)
+    assert craft.hears(RETURN).undone
+    assert named(craft).who == "pilot"
+
+
+def test_an_autopilot_whose_state_tells_has_the_last_word() -> None:
+    lost_name = flying(HOLD)
+    lost_name.hears(RETURN)
+    told = says(lost_name, acts=True)
+    assert (told.who, told.cause) == ("failsafe", "other")
+    warned = flying(HOLD)
+    named(warned)
+    assert warned.hears(RETURN).who == "failsafe"
+    pilots = says(warned, acts=False)
+    assert (pilots.who, pilots.perhaps_failsafe, pilots.cause) == ("pilot", False, None)
+    assert named(warned).who == "pilot"
+    at_once = flying(HOLD)
+    named(at_once)
+    assert says(at_once, acts=False).who == "pilot"
+    late = flying(HOLD)
+    late.hears(RETURN)
+    assert says(late, acts=True, mode=LAND, later_s=ACTS_S + 0.1).who == "pilot"
+
+
+def test_a_failsafe_that_is_named_on_the_ground_is_nothing() -> None:
+    craft = Craft()
+    craft.on_ground(HOLD)
+    before = craft.now
+    assert named(craft) == before
+
+
+def test_a_restart_keeps_the_cause_and_an_authority_stored_before_causes_were_kept_still_loads() -> None:
+    craft = flying(GUIDED)
+    named(craft, "fence")
+    craft.hears(RETURN)
+    assert craft.sees(ServerRestarted()).cause == "fence"
+    old = Authority(who="pilot", taken_by="mode", taken_at_s=1.0, mode="RTL", perhaps_failsafe=True)
+    assert (old.cause, old.named_at_s) == (None, None)
