@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from backend.craft.effects import CancelTimer, CancelWork
 from backend.craft.inputs import Restarted
 from backend.craft.state import AUTOMATIC, failsafe_has, ours_to_order, pilot_has
@@ -29,16 +31,32 @@ def authority_heard(step: CraftStep, heard: Authority) -> None:
         reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
         alert(step, "pilot", "caution", reason)
         step.go("manual", reason)
-    elif failsafe_has(heard) and not failsafe_has(before) and craft.phase in AUTOMATIC | {"hold"}:
+    elif failsafe_has(heard) and (not failsafe_has(before) or heard.cause != before.cause):
+        _by_failsafe(step, heard)
+
+
+def _by_failsafe(step: CraftStep, heard: Authority) -> None:
+    """Also of what counted as a pilot's for a moment, until the autopilot named its cause."""
+    silent = "link_lost" if "vehicle" in step.craft.links_down else "silence"
+    reason = flight.FailsafeFlies(_named(heard) or silent)
+    if step.craft.phase in AUTOMATIC | {"hold"} or (step.craft.phase == "manual" and heard.who == "failsafe"):
         step.do(CancelWork())
-        silent = "link_lost" if "vehicle" in craft.links_down else "silence"
-        _failsafe_flies(step, flight.FailsafeFlies(silent))
+        clear_alerts(step, "pilot")
+        _failsafe_flies(step, reason)
+    elif heard.who == "failsafe" and _named(heard) is not None:
+        alert(step, "vehicle", "caution", reason)
+
+
+def _named(heard: Authority) -> Literal["battery", "transmitter", "position", "fence", "other"] | None:
+    """What the autopilot says of a failsafe that acts on something else than silence."""
+    return None if heard.cause == "silence" else heard.cause
 
 
 def kept_of(authority: Authority) -> tuple[object, ...]:
     """What of it is a fact to keep: the bookkeeping of each command is not."""
     a = authority
-    return a.who, a.taken_by, a.given_back, a.perhaps_failsafe, a.undone, a.mode
+    cause = a.cause if a.who == "failsafe" else None
+    return a.who, a.taken_by, a.given_back, a.perhaps_failsafe, a.undone, a.mode, cause
 
 
 def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
@@ -64,7 +82,7 @@ def restarted(step: CraftStep, given: Restarted) -> None:
         step.go("manual", reason)
     elif failsafe_has(heard):
         because = "ordered_before" if craft.comes_down_as_ordered else "server_away"
-        _failsafe_flies(step, flight.FailsafeFlies(because))
+        _failsafe_flies(step, flight.FailsafeFlies(_named(heard) or because))
     else:
         insist(step, "hold")
         step.go("hold", flight.BackAfterRestart())

@@ -124,12 +124,16 @@ class PilotFlies:
 class FailsafeFlies:
     """The autopilot is on its own way home or down, and why."""
 
-    because: Literal["silence", "link_lost", "server_away", "ordered_before"]
+    because: Literal[
+        "silence", "link_lost", "server_away", "ordered_before", "battery", "transmitter", "position", "fence", "other"
+    ]
     code: Literal["failsafe_flies"] = "failsafe_flies"
     english: ClassVar[Words] = Words(
         "The autopilot brings the vehicle home by itself: {because?silence=it had not heard from here"
         "|link_lost=its failsafe acted while the link was lost|server_away=its failsafe acted while the server was away"
-        "|ordered_before=the return was ordered before the server was away}.",
+        "|ordered_before=the return was ordered before the server was away|battery=its battery is low"
+        "|transmitter=it does not hear the pilot's transmitter|position=it is not sure where it is"
+        "|fence=it has left its fence|other=its own failsafe acts}.",
         "Resume to go on searching, or let it land.",
     )
 
