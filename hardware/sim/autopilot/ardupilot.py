@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from pymavlink.dialects.v20 import development as mavlink
 
+from hardware.sim.autopilot.failsafes import Cause
 from hardware.sim.autopilot.firmware import (
     ACCEPTED,
     DENIED,
@@ -45,6 +46,13 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "MAV_GCS_SYSID": (255, INT16),
 }
 
+_SAID: dict[Cause, tuple[int, str]] = {
+    "battery": (mavlink.MAV_SEVERITY_WARNING, "Battery Failsafe"),
+    "transmitter": (mavlink.MAV_SEVERITY_WARNING, "Radio Failsafe"),
+    "silence": (mavlink.MAV_SEVERITY_WARNING, "GCS Failsafe"),
+    "position": (mavlink.MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode"),
+    "fence": (mavlink.MAV_SEVERITY_NOTICE, "Polygon fence breached"),
+}
 GUIDED_AFTER = 9.0
 """Seconds from boot until the position estimate lets GUIDED in; prearm claims to be ready before."""
 
@@ -77,6 +85,7 @@ class ArduCopter(Firmware):
 
     def __init__(self, conditions: Conditions) -> None:
         super().__init__(conditions, Parameters(DEFAULTS, bytewise=False))
+        self._breached = False
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
@@ -107,9 +116,9 @@ class ArduCopter(Firmware):
         nav = self.navigation
         outside = not self._within_fence(nav.north, nav.east, nav.up)
         action = {1: "RTL", 2: "LAND", 3: "SMART_RTL", 4: "BRAKE"}.get(int(self.parameters["FENCE_ACTION"]))
-        if outside and action and self.mode != action:
-            self.say("Fence Breached", mavlink.MAV_SEVERITY_WARNING)
-            self.set_mode(action)
+        breached, self._breached = outside and not self._breached, outside
+        if breached and action and self.mode != action:
+            self.fail_safe("fence", action)
 
     # -- commands --------------------------------------------------------------------------------------------------
 
@@ -236,8 +245,7 @@ class ArduCopter(Firmware):
             int(self.parameters["FS_GCS_ENABLE"])
         )
         if action and self.mode in self.auto and self.mode not in ("RTL", "LAND"):
-            self.say("GCS Failsafe", mavlink.MAV_SEVERITY_CRITICAL)
-            self.set_mode(action)
+            self.fail_safe("silence", action)
 
     def battery_threshold(self) -> float:
         return 10.0
@@ -245,5 +253,25 @@ class ArduCopter(Firmware):
     def battery_low(self) -> None:
         action = {1: "LAND", 2: "RTL", 3: "SMART_RTL"}.get(int(self.parameters["BATT_FS_LOW_ACT"]))
         watched = self.parameters["BATT_LOW_VOLT"] > 0.0 or self.parameters["BATT_LOW_MAH"] > 0.0
-        if action and watched and self.flight.in_air and self.mode in self.auto:
-            self.set_mode(action)
+        if watched and self.flight.in_air and self.mode in self.auto:
+            self.fail_safe("battery", action)
+
+    def transmitter_timeout(self) -> float:
+        return 1.0
+
+    def transmitter_lost(self) -> None:
+        action = {1: "RTL", 2: "RTL", 3: "LAND", 4: "SMART_RTL", 5: "SMART_RTL"}.get(
+            int(self.parameters["FS_THR_ENABLE"])
+        )
+        if self.parameters["FS_THR_ENABLE"]:
+            self.fail_safe("transmitter", action)
+
+    def fail_safe(self, cause: Cause, mode: str | None) -> None:
+        """The mode first, then its text: both in one turn of its loop. The state stays critical but for the fence."""
+        self.critical = self.critical or cause != "fence"
+        if mode is not None:
+            self.set_mode(mode)
+        if cause == "battery":
+            self.say("Battery 1 is low 10.40V used 2400 mAh", mavlink.MAV_SEVERITY_WARNING)
+        severity, text = _SAID[cause]
+        self.say(text, severity)

@@ -7,7 +7,7 @@ behaviour was measured on PX4 1.16 SIH and ArduCopter 4.7 SITL).
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections import deque
 from collections.abc import Collection
 from dataclasses import dataclass, field
@@ -17,14 +17,13 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.copter import Airframe, Copter, Wind
+from hardware.sim.autopilot.failsafes import Failsafes
 from hardware.sim.autopilot.fence import Fence
 from hardware.sim.autopilot.flight import Flight
 from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.parameters import Parameters
 from hardware.sim.autopilot.sensors import Navigation
 
-FLIES_ON_WITHOUT_FIX = 5.0
-"""Seconds from the last fix to the autopilot's own landing, as measured on PX4."""
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = 0, 1, 2, 3, 4
 """MAV_RESULT."""
 _CHUNK = 50
@@ -97,7 +96,7 @@ def deg_or_none(value: float) -> float | None:
 SWITCH_AT_REST_US, SWITCH_MOVED_US = 1165, 1815
 
 
-class Firmware(ABC):
+class Firmware(Failsafes):
     """Base of the flavours. `time` is seconds since boot, simulated."""
 
     name: ClassVar[str]
@@ -143,7 +142,6 @@ class Firmware(ABC):
         self.commands: deque[tuple[float, int]] = deque(maxlen=10_000)
         """(time, MAV_CMD) of every command received, for tests that ask what passed."""
         self.gcs_heard_at: float | None = None
-        self.gcs_failsafe = False
         self.heartbeat_due = False
         self.mode_switch_us = SWITCH_AT_REST_US
         """The pulse of the channel by which the pilot's transmitter selects modes."""
@@ -151,9 +149,6 @@ class Firmware(ABC):
         """Set by `reboot`, cleared by whoever keeps what a reboot forgets (the streams)."""
         self._text_id = 0 if self.name == "px4" else 1  # PX4 counts from the one that means "whole"
         self._armed_at = 0.0
-        self._battery_failsafe = False
-        self._held_before = False
-        """It lands without a fix, and held before: PX4 holds again once it has one."""
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
@@ -240,7 +235,7 @@ class Firmware(ABC):
             raise ValueError("The autopilot does not reboot in the air: land first.")
         self.flight.disarm()
         self.time, self.mode, self.gcs_heard_at = 0.0, next(iter(self.modes)), None
-        self.rebooted = True
+        self.rebooted, self.critical = True, False
 
     # -- arming ----------------------------------------------------------------------------------------------------
 
@@ -293,9 +288,7 @@ class Firmware(ABC):
         self.flight.step(dt)
         if self.flight.armed:
             self._watch_ground()
-            self._watch_gcs()
-            self._watch_battery()
-            self._watch_fix()
+            self.watch_failsafes()
             self.watch()
 
     @abstractmethod
@@ -313,57 +306,9 @@ class Firmware(ABC):
             flight.disarm()
             self.say("Disarmed: no take-off")
 
-    def landed(self) -> None:  # noqa: B027 (a flavour may do nothing here)
+    def landed(self) -> None:
         """After the motors stopped at the end of a landing."""
 
     def watches_station(self, system_id: int) -> bool:
         """Whether this ground station's heartbeats count for the failsafe."""
         return True
-
-    @abstractmethod
-    def gcs_timeout(self) -> float:
-        """Seconds without a ground station's heartbeat that count as lost."""
-
-    @abstractmethod
-    def gcs_lost(self) -> None:
-        """The failsafe for a lost ground station, by its parameter."""
-
-    gcs_timeout_floor: float = 0.0
-    """A ground station sends heartbeats by the wall's clock: sped up, no less than this many simulated seconds."""
-
-    def _watch_gcs(self) -> None:
-        if self.gcs_heard_at is None or not self.flight.in_air:
-            return
-        lost = self.time - self.gcs_heard_at > max(self.gcs_timeout(), self.gcs_timeout_floor)
-        if lost and not self.gcs_failsafe:
-            self.gcs_failsafe = True
-            self.gcs_lost()
-        elif not lost:
-            self.gcs_failsafe = False
-
-    def _watch_fix(self) -> None:
-        if self.flight.in_air and self.navigation.without_fix_for > FLIES_ON_WITHOUT_FIX and self.mode != "LAND":
-            self.say("Position estimate lost", mavlink.MAV_SEVERITY_EMERGENCY)
-            self._held_before = self.mode == "HOLD"
-            self.set_mode("LAND")
-        elif self._held_before and self.navigation.has_fix:
-            self._held_before = False
-            if self.flight.in_air and self.mode == "LAND":
-                self.set_mode("HOLD")
-
-    @abstractmethod
-    def battery_low(self) -> None:
-        """The battery failsafe, by its parameter; called once."""
-
-    @abstractmethod
-    def battery_threshold(self) -> float:
-        """Percent."""
-
-    def _watch_battery(self) -> None:
-        if not self._battery_failsafe and self.copter.battery_percent < self.battery_threshold():
-            self._battery_failsafe = True
-            self.say("Low battery", mavlink.MAV_SEVERITY_WARNING)
-            self.battery_low()
-        if self.copter.energy <= 0.0 and self.flight.in_air and self.flight.task != "land":
-            self.say("Battery empty", mavlink.MAV_SEVERITY_EMERGENCY)
-            self.flight.land()

@@ -8,6 +8,7 @@
     {"do": "uplink_loss", "seconds": 8}       it hears nothing of ours, and is heard all the same
     {"do": "link_delay", "seconds": 0.08}     each way, from now on (simulated seconds)
     {"do": "gps_jump", "north_m": 30, "east_m": 0, "seconds": 5}
+    {"do": "transmitter_loss", "seconds": 10}  the pilot's transmitter is silent
     {"do": "gps_loss", "seconds": 10}         no satellites; after 5 s it lands by itself
     {"do": "heading_error", "degrees": 15}
     {"do": "battery", "percent": 15}
@@ -110,6 +111,8 @@ class Orders:
                 firmware.navigation.jump(
                     _number(order, "north_m", 0.0), _number(order, "east_m", 0.0), _number(order, "seconds", 5.0)
                 )
+            case "transmitter_loss":
+                firmware.transmitter_lost_until = firmware.time + _number(order, "seconds", 10.0)
             case "gps_loss":
                 firmware.navigation.lose_fix(_number(order, "seconds", 10.0))
             case "heading_error":

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import struct
 from typing import ClassVar
 
 from pymavlink.dialects.v20 import development as mavlink
 
+from hardware.sim.autopilot.failsafes import Cause, Event
 from hardware.sim.autopilot.firmware import (
     ACCEPTED,
     DENIED,
@@ -37,11 +39,18 @@ def px4_mode(main: int, sub: int = 0) -> int:
     return main << 16 | sub << 24
 
 
+_ACTS, _ACTS_GENERIC, _DISENGAGED = 0x94CA8A, 0xDEDBD0, 0xC2DC72
+_ANNOUNCED, _ANNOUNCED_GENERIC = 0xD11DF6, 0x44B3E0
+"""PX4's events about a failsafe (commander_failsafe_enter...)."""
+_ACTIONS = {"HOLD": 5, "RETURN": 6, "LAND": 7}
+_CAUSES: dict[Cause, int] = {"transmitter": 1, "silence": 2, "battery": 4}
 DEFAULTS: dict[str, tuple[float, int]] = {
     "NAV_DLL_ACT": (2, INT32),
     "NAV_RCL_ACT": (2, INT32),
     "RC_MAP_FLTMODE": (0, INT32),
     "COM_DL_LOSS_T": (10, INT32),
+    "COM_RC_LOSS_T": (0.5, REAL32),
+    "COM_FAIL_ACT_T": (5.0, REAL32),
     "COM_OBL_RC_ACT": (0, INT32),
     "COM_RC_OVERRIDE": (1, INT32),
     "COM_DISARM_PRFLT": (10.0, REAL32),
@@ -111,13 +120,22 @@ class Px4(Firmware):
         """Until when it is carried on, and where it was told to stop."""
         self._given_yaw = False
         self._after_landing = "HOLD"
+        self._breached = False
+        self._acts_at: tuple[float, str, Cause] | None = None
+        """When a failsafe that was announced selects its mode, which, and why."""
+        self._events = 0
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
     def set_mode(self, mode: str) -> None:
         if mode in ("RETURN", "LAND") and self.mode not in ("RETURN", "LAND"):
             self._after_landing = "TAKEOFF" if self.mode == "TAKEOFF" else "HOLD"
+        self._user_takes()
         super().set_mode(mode)
+
+    def _user_takes(self) -> None:
+        """Whoever selects a mode, even the present one, ends a failsafe that acts or is about to."""
+        self.critical, self._acts_at = False, None
 
     def arm(self) -> int:
         """In TAKEOFF it then takes off unasked: only the mode is looked at."""
@@ -143,6 +161,8 @@ class Px4(Firmware):
 
     def watch(self) -> None:
         flight = self.flight
+        if self._acts_at is not None and self.time >= self._acts_at[0]:
+            self._act(*self._acts_at[1:])
         if self._faces_its_stop and self._speed() < FACES_ITS_STOP_M_S:
             self._faces_its_stop = False
             flight.turn_by(0.0, self.parameters["MPC_YAWRAUTO_MAX"])
@@ -158,7 +178,7 @@ class Px4(Firmware):
 
     def landed(self) -> None:
         """Told to land in its climb, it goes back to TAKEOFF."""
-        self.mode = self._after_landing
+        self.mode, self.critical = self._after_landing, False
 
     def _within_fence(self, north: float, east: float, up: float) -> bool:
         far, high = self.parameters["GF_MAX_HOR_DIST"], self.parameters["GF_MAX_VER_DIST"]
@@ -169,9 +189,10 @@ class Px4(Firmware):
         nav = self.navigation
         outside = not self._within_fence(nav.north, nav.east, nav.up)
         action = {2: "HOLD", 3: "RETURN", 5: "LAND"}.get(int(self.parameters["GF_ACTION"]))
-        if outside and action and self.mode != action:
-            self.say("Geofence breached", mavlink.MAV_SEVERITY_WARNING)
-            self.set_mode(action)
+        breached, self._breached = outside and not self._breached, outside
+        if breached and action and self.mode != action:
+            self.say("Geofence violation: approaching or outside geofence", mavlink.MAV_SEVERITY_CRITICAL)
+            self.fail_safe("fence", action)
 
     # -- commands --------------------------------------------------------------------------------------------------
 
@@ -207,6 +228,7 @@ class Px4(Firmware):
             return TEMPORARILY_REJECTED
         if mode != self.mode or not self.flight.in_air:
             self.set_mode(mode)  # HOLD while in HOLD changes nothing: it flies on to where it was sent
+        self._user_takes()
         return ACCEPTED
 
     def _reposition(self, command: Command) -> int:
@@ -318,13 +340,51 @@ class Px4(Firmware):
     def gcs_lost(self) -> None:
         action = {1: "HOLD", 2: "RETURN", 3: "LAND"}.get(int(self.parameters["NAV_DLL_ACT"]))
         if action and self.mode in self.auto and self.mode not in ("RETURN", "LAND"):
-            self.say("Failsafe activated: GCS connection lost", mavlink.MAV_SEVERITY_CRITICAL)
-            self.set_mode(action)
+            self._act(action, "silence")
 
     def battery_threshold(self) -> float:
         return 100.0 * self.parameters["BAT_CRIT_THR"]
 
     def battery_low(self) -> None:
         action = {2: "LAND", 3: "RETURN"}.get(int(self.parameters["COM_LOW_BAT_ACT"]))
-        if action and self.flight.in_air and self.mode in self.auto:
-            self.set_mode(action)
+        self.say("Critical battery\t", mavlink.MAV_SEVERITY_EMERGENCY)
+        if self.flight.in_air and self.mode in self.auto:
+            self.fail_safe("battery", action)
+
+    def transmitter_timeout(self) -> float:
+        return self.parameters["COM_RC_LOSS_T"]
+
+    def transmitter_lost(self) -> None:
+        action = {1: "HOLD", 2: "RETURN", 3: "LAND"}.get(int(self.parameters["NAV_RCL_ACT"]))
+        if action:
+            self.fail_safe("transmitter", action)
+
+    def fail_safe(self, cause: Cause, mode: str | None) -> None:
+        """It hovers before most of them act. A warning says the same words without an event."""
+        delay = self.parameters["COM_FAIL_ACT_T"]
+        if mode is None:
+            self.say("Failsafe activated\t", mavlink.MAV_SEVERITY_CRITICAL)
+        elif cause == "position" or mode == "HOLD" or delay <= 0.0:
+            self._act(mode, cause)
+        else:
+            if self.mode != "HOLD":
+                self.set_mode("HOLD")
+            self.critical, self._acts_at = True, (self.time + delay, mode, cause)
+            self._tell(_ANNOUNCED, _ANNOUNCED_GENERIC, mode, cause, struct.pack("<H", int(delay)))
+            self.say(f"Failsafe activated: entering Hold for {delay:.0f} seconds\t", mavlink.MAV_SEVERITY_CRITICAL)
+
+    def _act(self, mode: str, cause: Cause) -> None:
+        self.say("Failsafe activated\t", mavlink.MAV_SEVERITY_CRITICAL)
+        self.set_mode(mode)
+        self.critical = True
+        self._tell(_ACTS, _DISENGAGED if cause == "position" else _ACTS_GENERIC, mode, cause)
+
+    def _tell(self, number: int, generic: int, mode: str, cause: Cause, delay: bytes = b"") -> None:
+        """As an event: the mode that was wanted, the action, the delay, the cause where it has a number."""
+        action = 8 if cause == "position" else _ACTIONS[mode]
+        arguments = struct.pack("<IB", self.modes["HOLD"], action) + delay
+        if cause in _CAUSES:
+            arguments += bytes((_CAUSES[cause],))
+        number = (1 << 24) | (number if cause in _CAUSES else generic)
+        self._events += 1
+        self.outbox.append(Event(number, int(self.time * 1000.0), self._events % 65_536, arguments))

@@ -63,11 +63,11 @@ class Station:
     def due(self) -> Iterator[bytes]:
         """What is to be sent at the firmware's present time."""
         firmware, now = self.firmware, self.firmware.time
-        while firmware.outbox:
-            yield self.pack(firmware.outbox.popleft())
         if firmware.heartbeat_due:
             firmware.heartbeat_due = False
             yield self.pack(self._builders[mavlink.MAVLINK_MSG_ID_HEARTBEAT](firmware))
+        while firmware.outbox:
+            yield self.pack(firmware.outbox.popleft())
         for message, due in self._due.items():
             if now >= due and not (message == mavlink.MAVLINK_MSG_ID_CURRENT_MODE and self._mode_is_known):
                 self._due[message] = max(due + self._period[message], now)

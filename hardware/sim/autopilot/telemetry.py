@@ -58,6 +58,8 @@ def heartbeat(firmware: Firmware) -> Message:
     if firmware.flight.armed:
         base |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     state = mavlink.MAV_STATE_ACTIVE if firmware.flight.armed else mavlink.MAV_STATE_STANDBY
+    if firmware.critical:
+        state = mavlink.MAV_STATE_CRITICAL
     return mavlink.MAVLink_heartbeat_message(
         mavlink.MAV_TYPE_QUADROTOR, firmware.mav_autopilot, base, firmware.custom_mode, state, 3
     )

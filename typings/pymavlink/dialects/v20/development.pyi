@@ -64,8 +64,10 @@ MAV_RESULT_UNSUPPORTED: int
 MAV_SEVERITY_CRITICAL: int
 MAV_SEVERITY_EMERGENCY: int
 MAV_SEVERITY_INFO: int
+MAV_SEVERITY_NOTICE: int
 MAV_SEVERITY_WARNING: int
 MAV_STATE_ACTIVE: int
+MAV_STATE_CRITICAL: int
 MAV_STATE_STANDBY: int
 MAV_SYS_STATUS_AHRS: int
 MAV_SYS_STATUS_PREARM_CHECK: int
@@ -82,6 +84,8 @@ MAV_VTOL_STATE_UNDEFINED: int
 class MAVLink_message:
     id: int
     msgname: str
+    def __init__(self, msgId: int, name: str) -> None: ...
+    def _pack(self, mav: MAVLink, crc_extra: int, payload: bytes, force_mavlink1: bool = False) -> bytes: ...
     def get_msgbuf(self) -> bytearray: ...
     def get_type(self) -> str: ...
     def get_msgId(self) -> int: ...
