@@ -129,11 +129,10 @@ class FailsafeFlies:
     ]
     code: Literal["failsafe_flies"] = "failsafe_flies"
     english: ClassVar[Words] = Words(
-        "The autopilot brings the vehicle home by itself: {because?silence=it had not heard from here"
-        "|link_lost=its failsafe acted while the link was lost|server_away=its failsafe acted while the server was away"
-        "|ordered_before=the return was ordered before the server was away|battery=its battery is low"
-        "|transmitter=it does not hear the pilot's transmitter|position=it is not sure where it is"
-        "|fence=it has left its fence|other=its own failsafe acts}.",
+        "The autopilot returns or lands by itself: {because?silence=it had not heard from here"
+        "|link_lost=the link was lost|server_away=the server was away|ordered_before=as ordered earlier"
+        "|battery=battery low|transmitter=transmitter lost|position=position lost|fence=geofence left"
+        "|other=a failsafe of its own}.",
         "Resume to go on searching, or let it land.",
     )
 
@@ -159,8 +158,7 @@ class Landed:
     english: ClassVar[Words] = Words(
         "The vehicle landed {during?hold=while the mission was held|automatic=although nothing ordered it"
         "|manual=while the pilot or its own failsafe had control|localized=and the emitter is localized}.",
-        "{during?hold=Resume to take off again, abort to end the mission."
-        "|automatic=Resume to take off again, abort to end the mission.|*=}",
+        "{during?manual=|localized=|*=Resume to take off again, abort to end the mission.}",
     )
 
 

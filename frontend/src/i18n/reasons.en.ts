@@ -738,7 +738,7 @@ export const reasonsEn: ReasonTable = {
     "Resume when the pilot has given control back.",
   ],
   failsafe_flies: [
-    "The autopilot brings the vehicle home by itself: {because?silence=it had not heard from here|link_lost=its failsafe acted while the link was lost|server_away=its failsafe acted while the server was away|ordered_before=the return was ordered before the server was away}.",
+    "The autopilot returns or lands by itself: {because?silence=it had not heard from here|link_lost=the link was lost|server_away=the server was away|ordered_before=as ordered earlier|battery=battery low|transmitter=transmitter lost|position=position lost|fence=geofence left|other=a failsafe of its own}.",
     "Resume to go on searching, or let it land.",
   ],
   failsafe_stopped: [
@@ -747,7 +747,7 @@ export const reasonsEn: ReasonTable = {
   ],
   landed: [
     "The vehicle landed {during?hold=while the mission was held|automatic=although nothing ordered it|manual=while the pilot or its own failsafe had control|localized=and the emitter is localized}.",
-    "{during?hold=Resume to take off again, abort to end the mission.|automatic=Resume to take off again, abort to end the mission.|*=}",
+    "{during?manual=|localized=|*=Resume to take off again, abort to end the mission.}",
   ],
   other_antenna: [
     "The server was restarted with another antenna pattern ({given}); this mission keeps its own ({flown}).",

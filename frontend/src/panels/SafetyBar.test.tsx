@@ -11,12 +11,11 @@ import { FakeSource } from "../sources/fakeSource";
 import type { SourceMessage } from "../sources/source";
 import { moveClock, nowMs } from "../state/clock";
 import { live } from "../state/connection";
-import { NOBODY } from "../state/craft";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import { session } from "../state/session";
 import type { Authority, CraftStatus, MissionEvent, Phase } from "../wire";
-import { CRAFT, phase, record, someSpec, someStatus, someTelemetry } from "../wire/examples";
+import { CRAFT, NOBODY, phase, record, someSpec, someStatus, someTelemetry } from "../wire/examples";
 import { SafetyBar } from "./SafetyBar";
 
 watchKeys();

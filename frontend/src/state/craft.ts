@@ -7,6 +7,9 @@ export interface Lost {
   reason: Reason;
 }
 
+/** What is shown of who flies. */
+export type WhoFlies = Pick<Authority, "who" | "taken_by" | "mode" | "given_back" | "perhaps_failsafe" | "failsafe_landed" | "undone">;
+
 export interface CraftState {
   craftId: string;
   /** It was started for this mission and is not down since. */
@@ -24,28 +27,19 @@ export interface CraftState {
   automatic: boolean;
   /** It returns then because its battery runs low, unless somebody stops that. */
   returnsAt: string | null;
-  authority: Authority;
+  authority: WhoFlies;
   authoritySince: string | null;
   lost: Readonly<Partial<Record<LinkName, Lost>>>;
 }
 
-export const NOBODY: Authority = {
+export const NOBODY: WhoFlies = {
   who: "nobody",
   taken_by: null,
-  taken_at_s: null,
   mode: null,
   given_back: false,
   perhaps_failsafe: false,
   failsafe_landed: false,
-  under_way: [],
   undone: false,
-  commanded: [],
-  tolerated: [],
-  shown_before: null,
-  heard: null,
-  kind: null,
-  armed: false,
-  restarted: false,
 };
 
 export const emptyCraft = (craftId: string, automatic: boolean): CraftState => ({
@@ -66,7 +60,7 @@ export const emptyCraft = (craftId: string, automatic: boolean): CraftState => (
 });
 
 /** A pilot has control, and no operator has taken it back since; after their landing, too. */
-export const pilotHas = ({ taken_by, who, failsafe_landed }: Authority): boolean =>
+export const pilotHas = ({ taken_by, who, failsafe_landed }: WhoFlies): boolean =>
   taken_by !== null && who !== "failsafe" && !failsafe_landed;
 
 /** Until now since the plan: the expected time runs only while the search goes on. */

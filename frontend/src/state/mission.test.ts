@@ -8,6 +8,7 @@ import {
   flown,
   included,
   mute,
+  NOBODY,
   person,
   phase,
   record,
@@ -19,7 +20,6 @@ import {
   someSpec,
   started,
 } from "../wire/examples";
-import { NOBODY } from "./craft";
 import { emptyMission, foldMission, inFlight, isOver, missionAt } from "./mission";
 import { viewOf } from "./view";
 

@@ -3,8 +3,20 @@ import { afterEach, describe, expect, it } from "vitest";
 import { reasonText, setLanguage, t } from "../i18n";
 import { formatBearing, formatNumber } from "../units/quantities";
 import type { EventOf, MissionEvent } from "../wire";
-import { CRAFT, EMITTER, ended, flown, leadingTo, phase, record, someBearing, someReason, someSpec, started } from "../wire/examples";
-import { NOBODY } from "./craft";
+import {
+  CRAFT,
+  EMITTER,
+  ended,
+  flown,
+  leadingTo,
+  NOBODY,
+  phase,
+  record,
+  someBearing,
+  someReason,
+  someSpec,
+  started,
+} from "../wire/examples";
 import { isMain } from "./eventWeight";
 import { eventWords } from "./eventWords";
 import { missionAt } from "./mission";

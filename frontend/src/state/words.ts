@@ -2,6 +2,7 @@
 import { type MessageKey, reasonText, t } from "../i18n";
 import { formatClock, formatDuration } from "../units/quantities";
 import type { Authority, BearingSource, CheckFact, LinkName, MissionPhase, Reason, ReasonCode } from "../wire";
+import type { WhoFlies } from "./craft";
 import { isOver } from "./mission";
 import type { MissionView } from "./view";
 
@@ -55,7 +56,7 @@ export function whoFlies(who: Authority["who"], mode: string, perhapsFailsafe: b
 }
 
 /** The same with what only an authority knows: an order that undid the switch, a vehicle that was given back. */
-export function authorityWords(authority: Authority, mode: string): string {
+export function authorityWords(authority: WhoFlies, mode: string): string {
   if (authority.who === "pilot" && authority.undone) return t("control.undone");
   if (authority.who === "pilot" && authority.given_back)
     return t(authority.perhaps_failsafe ? "control.perhapsGivenBack" : "control.givenBack");

@@ -1,6 +1,7 @@
 // Events for tests: those of the recorded example, with what tests count on spelled out.
 import text from "../../public/example.json?raw";
 import type {
+  Authority,
   BearingSource,
   CraftStatus,
   EventKind,
@@ -54,6 +55,28 @@ export const someBelief = (changes: Partial<EventOf<"belief_updated">> = {}): Ev
   ...first("belief_updated"),
   ...changes,
 });
+
+/** An authority before anything was commanded or heard. */
+export const NOBODY: Authority = {
+  who: "nobody",
+  taken_by: null,
+  taken_at_s: null,
+  mode: null,
+  given_back: false,
+  perhaps_failsafe: false,
+  failsafe_landed: false,
+  cause: null,
+  named_at_s: null,
+  under_way: [],
+  undone: false,
+  commanded: [],
+  tolerated: [],
+  shown_before: null,
+  heard: null,
+  kind: null,
+  armed: false,
+  restarted: false,
+};
 
 /** In the air, every value new. */
 export const someTelemetry = (changes: Partial<TelemetryMessage> = {}): TelemetryMessage => ({

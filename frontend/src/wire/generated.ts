@@ -1935,6 +1935,8 @@ export interface components {
          *     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
          *     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
          *     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
+         *     cause: of the failsafe that flies, where the autopilot said it; before it flies: what it named last. named_at_s:
+         *     when.
          *     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
          *     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
          *     given nothing back.
@@ -1959,6 +1961,8 @@ export interface components {
             perhaps_failsafe: boolean;
             /** @default false */
             failsafe_landed: boolean;
+            cause: ("battery" | "transmitter" | "position" | "fence" | "silence" | "other") | null;
+            named_at_s: number | null;
             /** @default [] */
             under_way: number[];
             /** @default false */
@@ -3454,7 +3458,7 @@ export interface components {
         /** @description The autopilot is on its own way home or down, and why. */
         FailsafeFlies: {
             /** @enum {string} */
-            because: "silence" | "link_lost" | "server_away" | "ordered_before";
+            because: "silence" | "link_lost" | "server_away" | "ordered_before" | "battery" | "transmitter" | "position" | "fence" | "other";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

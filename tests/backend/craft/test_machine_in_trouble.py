@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Literal
+
 import pytest
 from craft_walk import VEHICLE, CraftWalk, craft_in, moves, refusal, sent
 from facts import (
@@ -60,6 +63,43 @@ def test_a_failsafe_that_acts_holds_the_craft_and_is_not_fought() -> None:
         assert walk.craft.phase == "hold"
         assert not walk.craft.taken_over
         assert walk.last_alert.reason == FailsafeFlies("silence")
+
+
+@pytest.mark.parametrize("cause", ["battery", "transmitter", "position", "fence", "other"])
+def test_a_failsafe_whose_cause_the_autopilot_named_is_said_with_it_also_after_it_counted_as_a_pilots(
+    cause: Literal["battery", "transmitter", "position", "fence", "other"],
+) -> None:
+    named = replace(FAILSAFE, cause=cause)
+    for before in (OURS, PERHAPS_PILOT):
+        walk = CraftWalk().to("flying")
+        walk.give(inputs.AuthorityHeard(before))
+        asked = walk.give(inputs.AuthorityHeard(named))
+        assert not sent(asked)
+        assert effects.CancelWork() in asked
+        assert (walk.craft.phase, walk.craft.taken_over, walk.topics) == ("hold", False, ["vehicle"])
+        assert walk.last_alert.reason == FailsafeFlies(cause)
+        assert refusal(walk.order(commands.Hold())) is None
+        assert walk.craft.authority.who == "ours"
+    again = CraftWalk().to("flying")
+    again.give(inputs.Restarted(named))
+    assert again.last_alert.reason == FailsafeFlies(cause)
+
+
+def test_the_cause_that_is_named_last_is_said_and_of_a_silence_what_was_said_of_it_before() -> None:
+    walk = CraftWalk().to("flying")
+    walk.give(inputs.AuthorityHeard(replace(FAILSAFE, cause="silence")))
+    assert walk.last_alert.reason == FailsafeFlies("silence")
+    walk.give(inputs.AuthorityHeard(replace(FAILSAFE, cause="battery")))
+    assert walk.last_alert.reason == FailsafeFlies("battery")
+    assert walk.topics == ["vehicle"]
+
+
+@pytest.mark.parametrize("phase", sorted(HOMEWARD))
+def test_a_named_failsafe_on_the_way_home_is_said_and_the_phase_stays(phase: Phase) -> None:
+    walk = craft_in(phase)
+    asked = walk.give(inputs.AuthorityHeard(replace(FAILSAFE, cause="battery")))
+    assert not sent(asked)
+    assert (walk.craft.phase, walk.topics) == (phase, ["vehicle"])
 
 
 def test_a_failsafe_that_an_order_has_stopped_leaves_the_craft_in_hold_and_sends_nothing() -> None:

@@ -31,7 +31,7 @@ export const flight = {
     "Fortsetzen, wenn der Pilot die Steuerung zurückgegeben hat.",
   ],
   failsafe_flies: [
-    "Der Autopilot bringt das Fluggerät von selbst heim: {because?silence=Er hatte von hier nichts gehört|link_lost=Sein Ausfallschutz hat gehandelt, während die Funkstrecke weg war|server_away=Sein Ausfallschutz hat gehandelt, während der Server weg war|ordered_before=Die Rückkehr wurde befohlen, bevor der Server weg war}.",
+    "Der Autopilot kehrt von selbst heim oder landet: {because?silence=Er hatte von hier nichts gehört|link_lost=Die Funkstrecke war weg|server_away=Der Server war weg|ordered_before=Wie früher befohlen|battery=Akku schwach|transmitter=Handsender verloren|position=Position verloren|fence=Zaun verlassen|other=Ausfallschutz}.",
     "Fortsetzen, um weiterzusuchen, oder es landen lassen.",
   ],
   failsafe_stopped: [
@@ -40,7 +40,7 @@ export const flight = {
   ],
   landed: [
     "Das Fluggerät ist gelandet{during?hold=, während die Mission angehalten war|automatic=, obwohl nichts es befohlen hat|manual=, während der Pilot oder sein eigener Ausfallschutz steuerte|localized=, und der Sender ist gefunden}.",
-    "{during?hold=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.|automatic=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.|*=}",
+    "{during?manual=|localized=|*=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.}",
   ],
   other_antenna: [
     "Der Server ist mit einem anderen Antennendiagramm neu gestartet ({given}); diese Mission behält ihres ({flown}).",
