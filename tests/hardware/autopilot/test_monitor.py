@@ -127,6 +127,33 @@ async def test_a_return_that_waited_to_be_read_while_the_server_was_being_loaded
     assert holding.monitor.telemetry().authority.who == "failsafe"
 
 
+RETURNS_UNHEARD_TRANSMITTER = [0, 0, 4, 3, 6, 1, *(0,) * 34]
+
+
+async def test_a_return_that_px4_explains_by_an_event_is_the_failsafes(holding: Scene) -> None:
+    holding.mode(RETURNING)
+    assert holding.monitor.telemetry().authority.who == "pilot"
+    holding.hear("EVENT", {"id": 0x0194CA8A, "arguments": RETURNS_UNHEARD_TRANSMITTER})
+    authority = holding.monitor.telemetry().authority
+    assert (authority.who, authority.cause) == ("failsafe", "transmitter")
+
+
+async def test_a_return_that_px4_announced_is_the_failsafes_until_its_state_tells_of_a_pilot(holding: Scene) -> None:
+    for text in ("Critical battery\t", "Failsafe activated: entering Hold for 5 seconds\t"):
+        holding.hear("STATUSTEXT", {"severity": 2, "text": text})
+    assert holding.monitor.telemetry().authority.who == "ours"
+    holding.clock.at += 5.0
+    holding.hear("STATUSTEXT", {"severity": 2, "text": "Failsafe activated\t"})
+    holding.mode(RETURNING)
+    authority = holding.monitor.telemetry().authority
+    assert (authority.who, authority.cause) == ("failsafe", "battery")
+    name, fields = heartbeat(RETURNING, True)
+    holding.hear(name, fields | {"system_status": 5})
+    assert holding.monitor.telemetry().authority.who == "failsafe"
+    holding.hear(name, fields | {"system_status": 4})
+    assert holding.monitor.telemetry().authority.who == "pilot"
+
+
 async def test_a_vehicle_that_was_listened_to_for_long_enough_returns_for_its_pilot(
     holding: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
