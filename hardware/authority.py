@@ -22,7 +22,7 @@ GIVEN_BACK_S = 1.5
 sticks before it reports the mode."""
 NAMED_S = 1.0
 """A way home that begins so shortly before or after the autopilot names a failsafe is that failsafe's. It says both in
-one turn of its loop; a mode that got lost on the link is told again within half a second."""
+one turn of its loop; a mode that got lost on the link comes again within half a second."""
 ACTS_S = 2.5
 """So long after a way home has begun its state may still tell whose that is: it comes once a second, or gets lost."""
 

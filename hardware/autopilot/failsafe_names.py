@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from hardware.authority import FailsafeCause
 
@@ -16,12 +16,12 @@ most (COM_FAIL_ACT_T)."""
 
 @dataclass(frozen=True, slots=True)
 class FailsafeText:
-    """A whole text, or how it begins and `ends`. cause: None: it tells of none. tells: that the failsafe acts now, that
-    it will in some seconds, or only a cause, after which it may act; acts_as_announced: now, where it was announced."""
+    """A whole text, or how it begins and `ends`. cause: None: it names none. tells: that the failsafe acts now, that it
+    will in some seconds, that it acts now where that was announced, or only a cause, after which it may act."""
 
     begins: str
     cause: FailsafeCause | None
-    tells: str = "acts"
+    tells: Literal["acts", "will_act", "acts_as_announced", "cause"] = "acts"
     ends: str | None = None
 
     def is_said(self, text: str) -> bool:
