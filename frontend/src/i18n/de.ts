@@ -538,8 +538,7 @@ export const de: Record<MessageKey, string> = {
   "whatIf.pattern": "Antennen\u00addiagramm …",
   "whatIf.pattern.remove": "Die Antenne, die flog",
   "whatIf.rejected": "verworfen",
-  "whatIf.legsLeftOut":
-    "Was unterwegs gehört wurde, fehlt hier (Strecken: {count}): Für eine andere Antenne wurden die Messwerte nicht aufbewahrt.",
+  "whatIf.legsLeftOut": "Strecken ausgelassen: {count}. Ihre Messwerte wurden für eine andere Antenne nicht aufbewahrt.",
   "whatIf.antenna": "Jede Drehung mit {name} gehört, {offset}° rechts der Nase.",
   "whatIf.antenna.check": "War es die gemessene Antenne?",
   "whatIf.antenna.fits": "{count} Drehungen sprechen nicht gegen das Diagramm.",
@@ -605,7 +604,7 @@ export const de: Record<MessageKey, string> = {
   "menu.health": "Zustand des Servers",
   "fly.unstored": "Nichts kann gespeichert werden.",
   "fly.unstoredMeanwhile":
-    "Der Flug geht weiter und bleibt im Arbeitsspeicher. Peilungen, Schätzung und Ereignisse hier sind die von vorher; Ort, Akku und Befehle sind aktuell.",
+    "Der Flug geht weiter und bleibt im Arbeitsspeicher. Peilungen, Schätzung und Ereignisse sind von vorher; Ort, Akku und Befehle sind aktuell.",
   "instruments.database.unstored": "nichts kann gespeichert werden",
   "health.title": "Zustand des Servers",
   "health.ok": "Alles antwortet.",
@@ -1116,7 +1115,7 @@ export const de: Record<MessageKey, string> = {
   "calibration.loading": "Liest die geprüften Missionen …",
   "calibration.noneOfThese": "Keine geprüfte Mission hat dieses Fluggerät und diese Antenne.",
   "calibration.nothingTold":
-    "Geprüfte Missionen: {missions}; nicht gefunden: {lost}. Keine hat eine Peilung zu einem Sender, dessen Ort bekannt ist; zu vergleichen ist nichts.",
+    "Geprüfte Missionen: {missions}; nicht gefunden: {lost}. Keine hat eine Peilung zu einem Sender an bekanntem Ort.",
   "calibration.empty": "Noch ist nichts geprüft. Öffnen Sie eine Mission, und sagen Sie unter „Gefunden?“, wo der Sender war.",
   "calibration.of": "Geprüfte Missionen: {missions}, mit {bearings} Peilungen; nicht gefunden: {lost}.",
   "calibration.held": "Traf zu",
@@ -1169,7 +1168,7 @@ export const de: Record<MessageKey, string> = {
   "compare.forget": "Vergessen",
   "compare.nothing": "Es wurde keine Peilung genommen; darum gibt es nichts zu vergleichen.",
   "compare.explain":
-    "Eine Variante wird aus den geflogenen Peilungen berechnet, jede zu ihrer Zeit. Ein anderer Planer oder eine andere Zahl von Simulationen ändert nur den nächsten Ort; „Was wäre, wenn …?“ in der Mission zeigt ihn.",
+    "Eine Variante wird aus den geflogenen Peilungen berechnet, jede zu ihrer Zeit. Andere Planer oder Simulationszahlen ändern nur den nächsten Ort: „Was wäre, wenn …?“ in der Mission zeigt ihn.",
   "missions.map": "Kleine Karte",
   "missions.report": "Bericht",
   "missions.label": "Beschriften …",

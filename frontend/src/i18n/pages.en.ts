@@ -145,7 +145,7 @@ export const pagesEn = {
   "whatIf.pattern": "Antenna pattern …",
   "whatIf.pattern.remove": "The antenna that flew",
   "whatIf.rejected": "rejected",
-  "whatIf.legsLeftOut": "What was heard on the way is not in this (legs: {count}): its samples were not kept for another antenna.",
+  "whatIf.legsLeftOut": "Legs left out: {count}. What they heard was not kept for another antenna.",
   "whatIf.antenna": "Every sweep heard through {name}, {offset}° right of the nose.",
   "whatIf.antenna.check": "Was it the measured antenna?",
   "whatIf.antenna.fits": "{count} sweeps do not speak against the pattern.",
@@ -168,7 +168,7 @@ export const pagesEn = {
   "whatIf.noPlan": "No next place: {reason}",
 
   "area.change": "Change the search area",
-  "area.what": "The mission holds meanwhile. Bearings count on; what you draw is added to the area. Nothing changes before you slide.",
+  "area.what": "The mission holds. Bearings still count; what you draw is added to the area. Nothing changes until you slide.",
   "area.notHeld": "The area changes in hold only: press Hold first.",
   "area.notStarted": "The mission has not started: its area is edited with the rest of the draft.",
   "area.over": "The mission is over: its area can no longer be changed.",
@@ -186,7 +186,7 @@ export const pagesEn = {
   "area.keep": "Keep the area",
   "fly.unstored": "Nothing can be stored.",
   "fly.unstoredMeanwhile":
-    "The flight goes on and is kept in memory. Bearings, estimate and log here are those from before; position, battery and orders are live.",
+    "The flight goes on and is kept in memory. Bearings, estimate and log are from before; position, battery and orders are live.",
   "instruments.database.unstored": "nothing can be stored",
   "health.title": "Server health",
   "health.ok": "Everything answers.",
@@ -463,8 +463,7 @@ export const pagesEn = {
   "calibration.any": "any",
   "calibration.loading": "Reading the checked missions …",
   "calibration.noneOfThese": "No checked mission has this vehicle and this antenna.",
-  "calibration.nothingTold":
-    "Missions checked: {missions}; not found: {lost}. None has a bearing to an emitter whose place is known, so there is nothing to compare.",
+  "calibration.nothingTold": "Missions checked: {missions}; not found: {lost}. None has a bearing to an emitter at a known place.",
   "calibration.empty": "Nothing is checked yet. Open a mission and say under “Found it?” where the emitter was.",
   "calibration.of": "Missions checked: {missions}, with {bearings} bearings; not found: {lost}.",
   "calibration.held": "Was right",
@@ -511,7 +510,7 @@ export const pagesEn = {
   "compare.forget": "Forget",
   "compare.nothing": "No bearing was taken, so there is nothing to compare.",
   "compare.explain":
-    "A variant is computed from the flown bearings, each at the time at which it was taken. Another planner or another number of rollouts changes the next place only; ask “What if …?” in the mission to see it.",
+    "A variant is computed from the flown bearings, each at its time. Another planner or budget changes the next place only: “What if …?” in the mission shows it.",
   "missions.map": "Small map",
   "missions.report": "Report",
   "missions.label": "Label …",

@@ -138,6 +138,20 @@ it("says after an abort that was held why it holds, not why it ended", () => {
   expect(doing(...leadingTo("aborted"), phase("hold", because))).toBe(t("state.hold", { reason: reasonText(because) }));
 });
 
+it("says neither that it holds while its failsafe flies, nor that it flies once it stands", () => {
+  const reason = { code: "failsafe_flies", because: "battery" } as const;
+  const landed: MissionEvent = {
+    ...{ kind: "alert_raised", alert_id: "a", topic: "ground", level: "warning", craft_id: CRAFT, emitter_id: null },
+    reason: { code: "landed", during: "hold" },
+  };
+  const cleared: MissionEvent = { kind: "alert_cleared", alert_id: "a" };
+  expect(doing(started(), phase("hold", reason))).toBe(reasonText(reason));
+  expect(doing(started(), phase("hold", reason), landed)).toBe(t("state.ground"));
+  expect(doing(started(), phase("hold", someReason), landed)).toBe(t("state.ground"));
+  expect(doing(started(), phase("hold", someReason), landed, cleared)).toBe(t("state.hold", { reason: reasonText(someReason) }));
+  expect(doing(started(), phase("hold", someReason), { ...landed, craft_id: "another" })).not.toBe(t("state.ground"));
+});
+
 it("says what the mission does in every phase, and why it ended", () => {
   expect(doing(...leadingTo("searching"))).toBe(t("state.searching"));
   expect(doing(...leadingTo("hold"))).toBe(t("state.hold", { reason: reasonText(someReason) }));

@@ -35,8 +35,10 @@ const HOLDING_LINK: Partial<Record<ReasonCode, LinkName>> = {
   payload_link_lost: "payload",
 };
 
-/** Why the craft stands still; a link that is back since is said to be back. */
-function holdWords({ phaseReason, lost }: MissionView, reason: string): string {
+/** Why the craft stands still, unless it stands on the ground or its failsafe flies; a link that is back since is said to be back. */
+function holdWords({ phaseReason, lost, alerts, craftId }: MissionView, reason: string): string {
+  if (alerts.some((alert) => alert.topic === "ground" && alert.craftId === craftId && !alert.cleared)) return t("state.ground");
+  if (phaseReason?.code === "failsafe_flies") return reason;
   const link = phaseReason && HOLDING_LINK[phaseReason.code];
   return link && !lost[link] ? t("state.hold.back", { link: t(`link.${link}` satisfies MessageKey) }) : t("state.hold", { reason });
 }
