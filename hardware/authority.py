@@ -37,7 +37,7 @@ class Authority:
     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
     cause: of the failsafe that flies, where the autopilot said it; before it flies: what it named last. named_at_s:
-    when.
+    when it named one last.
     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
     given nothing back.
@@ -270,10 +270,11 @@ def _failsafe_named(authority: Authority, seen: FailsafeNamed) -> Authority:
         return authority
     if authority.who == "pilot":
         begun = authority.perhaps_failsafe and authority.homeward and _began_lately(authority, seen.at_s, NAMED_S)
-        return _failsafes(authority, seen.cause) if begun and not authority.undone else authority
+        named = replace(authority, named_at_s=seen.at_s)
+        return _failsafes(named, seen.cause) if begun and not authority.undone else authority
     if authority.who == "failsafe":
         known = seen.cause == "other" and authority.cause is not None
-        return authority if known else replace(authority, cause=seen.cause)
+        return replace(authority, cause=authority.cause if known else seen.cause, named_at_s=seen.at_s)
     return replace(authority, cause=seen.cause, named_at_s=seen.at_s)
 
 
@@ -335,8 +336,8 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
     if before.who == "failsafe":
         if not seen.in_air or (waiting and seen.mode == before.heard and not seen.after_silence):
             return now
-        if homeward and seen.acts is False and before.cause is not None and not seen.after_silence:
-            return _taken(now, "pilot", "mode", seen.at_s, seen)  # they selected what the failsafe flew
+        if homeward and before.cause is not None and not seen.after_silence and _selected_by_hand(before, seen):
+            return _taken(now, "pilot", "mode", seen.at_s, seen)
         if homeward or (waiting and (seen.after_silence or before.cause == "position")):
             # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command,
             # and PX4 waits again once it knows its place
@@ -353,6 +354,11 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
         given_back=waiting and late and not undone,
         perhaps_failsafe=before.perhaps_failsafe and _doubt_stays(seen),
     )
+
+
+def _selected_by_hand(before: Authority, seen: ModeHeard) -> bool:
+    """A way home heard while a named failsafe flies one: the pilot may have selected the same, or another."""
+    return seen.acts is False or (seen.mode != before.heard and not _is_failsafes(before, seen))
 
 
 def _doubt_stays(seen: ModeHeard) -> bool:

@@ -192,3 +192,50 @@ def test_a_restart_keeps_the_cause_and_an_authority_stored_before_causes_were_ke
     assert craft.sees(ServerRestarted()).cause == "fence"
     old = Authority(who="pilot", taken_by="mode", taken_at_s=1.0, mode="RTL", perhaps_failsafe=True)
     assert (old.cause, old.named_at_s) == (None, None)
+
+
+@pytest.mark.parametrize("cause", ["battery", "fence", "transmitter", "silence", "other"])
+def test_who_selects_another_way_home_than_the_named_failsafe_flies_is_a_pilot(cause: FailsafeCause) -> None:
+    """A pilot who lands at once on a switch without a known channel, or once their transmitter is heard again."""
+    craft = flying(GUIDED)
+    named(craft, cause)
+    craft.hears(RETURN)
+    craft.waits(10.0)
+    landing = craft.hears(LAND)
+    assert (landing.who, landing.perhaps_failsafe, landing.cause) == ("pilot", True, None)
+    assert craft.hears(LAND).who == "pilot"
+
+
+@pytest.mark.parametrize("first", ["name", "mode"])
+def test_the_second_of_two_failsafes_that_are_named_flies_on(first: str) -> None:
+    craft = flying(GUIDED)
+    named(craft, "transmitter")
+    craft.hears(RETURN)
+    craft.waits(10.0)
+    if first == "name":
+        named(craft, "battery")
+        craft.hears(LAND)
+    else:
+        craft.hears(LAND)
+        named(craft, "battery")
+    assert (craft.now.who, craft.now.cause, craft.now.mode) == ("failsafe", "battery", "LAND")
+
+
+def test_the_state_alone_tells_that_a_failsafe_changes_its_way_home() -> None:
+    craft = flying(HOLD)
+    named(craft)
+    craft.hears(RETURN)
+    assert says(craft, acts=True, mode=LAND, later_s=10.0).who == "failsafe"
+    craft.waits(10.0)
+    craft.hears(RETURN)
+    assert says(craft, acts=True).who == "failsafe"
+
+
+def test_what_leaves_the_waiting_of_a_vehicle_that_knows_its_place_again_is_a_pilot() -> None:
+    craft = flying(HOLD)
+    named(craft, "position")
+    craft.hears(LAND)
+    craft.waits(GIVEN_BACK_S)
+    craft.hears(HOLD)
+    craft.waits(10.0)
+    assert craft.hears(LAND).who == "pilot"
