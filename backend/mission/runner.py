@@ -128,7 +128,10 @@ class MissionRunner:
         return asked
 
     def command(self, request: CommandRequest, author: Author, holder_gone: bool = False) -> tuple[Effect, ...]:
-        """An operator's command; safety's objections are found first."""
+        """An operator's command; who flies and what safety has against it are found first: an order may take a vehicle
+        from its failsafe, never from a pilot who has just taken it."""
+        for craft in self.crafts.values():
+            craft.watch.look_at_authority()
         command, contexts = request.command, dict[str, Context]()
         if isinstance(command, ForCraft):
             contexts = {

@@ -166,6 +166,20 @@ async def test_an_operator_may_take_the_vehicle_from_its_failsafe_which_is_no_pi
     assert stage.journal.state(mission_id).craft.authority.who == "ours"
 
 
+@pytest.mark.parametrize("command", [commands.Hold(), commands.Return(), commands.Land(), commands.Abort()])
+async def test_an_order_in_the_moment_in_which_a_pilot_takes_the_vehicle_from_its_failsafe_leaves_it_to_them(
+    stage: Stage, command: Command
+) -> None:
+    """The vehicle knows of the pilot, the mission has not looked yet."""
+    mission_id = await failsafe_flying(stage)
+    sent = list(stage.vehicle.commands)
+    stage.vehicle.shows("POSCTL")
+    await order(stage, mission_id, command)
+    await stage.until_phase(mission_id, "manual")
+    assert stage.vehicle.control.authority.who == "pilot"
+    assert stage.vehicle.commands == sent
+
+
 async def test_a_place_chosen_while_the_failsafe_flies_is_refused_with_its_name(stage: Stage) -> None:
     mission_id = await failsafe_flying(stage)
     refused = await order(stage, mission_id, commands.Override(place=Place(lat=50.0003, lon=7.0)))
