@@ -155,9 +155,12 @@ class Dialect:
         """The parameter that says for how long a station is silent before the autopilot acts on that."""
         return next(rule.parameter for rule in self.failsafes if rule.watch == "station_time")
 
-    def failsafe_acts(self, state: int | None) -> bool | None:
-        """Whether a failsafe has chosen the mode; state: MAV_STATE of the heartbeat that tells it. None: not said."""
-        return state >= _CRITICAL if state is not None and self.state_tells_failsafe else None
+    def failsafe_acts(self, state: int | None, tells_current_mode: bool) -> bool | None:
+        """Whether a failsafe has chosen the mode; state: MAV_STATE of the heartbeat that tells it. None: not said. A
+        PX4 before 1.15, which knows no CURRENT_MODE, is critical also while it only warns."""
+        if state is None or not self.state_tells_failsafe:
+            return None
+        return False if state < _CRITICAL else True if tells_current_mode else None
 
     def mode_name(self, custom_mode: int) -> str:
         """As pilots know it; "mode N" for one that this dialect does not name."""

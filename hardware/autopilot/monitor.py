@@ -337,7 +337,7 @@ class Monitor:
                 in_air=bool(snapshot.in_air),
                 after_silence=self._after_silence.look() or not self.connected,
                 at_s=snapshot.mode_at_s or self.clock.now(),
-                acts=self._dialect.failsafe_acts(state),
+                acts=self._dialect.failsafe_acts(state, snapshot.tells_current_mode),
             )
         )
 

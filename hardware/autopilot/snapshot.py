@@ -57,6 +57,8 @@ class Snapshot:
     heartbeat_at_s: float | None = None
     arming_at_s: float = -math.inf
     """When the autopilot last agreed to arm, or left an order to unanswered; infinite while the answer is awaited."""
+    tells_current_mode: bool = False
+    """It has sent CURRENT_MODE, which PX4 knows since 1.15."""
     landed_state: int = _UNDEFINED
     prearm_present: bool | None = None
     prearm_healthy: bool | None = None
@@ -142,6 +144,7 @@ class Snapshot:
                 self.armed, self.heartbeat_at_s = bool(int(fields["base_mode"]) & _ARMED), heard_at_s
             case "CURRENT_MODE":
                 self.custom_mode, self.mode_at_s = int(fields["custom_mode"]), heard_at_s
+                self.tells_current_mode = True
             case "ATTITUDE":
                 self._attitude(fields, heard_at_s)
             case "GLOBAL_POSITION_INT":

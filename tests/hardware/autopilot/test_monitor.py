@@ -154,6 +154,30 @@ async def test_a_return_that_px4_announced_is_the_failsafes_until_its_state_tell
     assert holding.monitor.telemetry().authority.who == "pilot"
 
 
+@pytest.mark.parametrize(("tells_current_mode", "who"), [(False, "pilot"), (True, "failsafe")])
+async def test_a_px4_before_1_15_is_critical_while_it_only_warns_so_that_its_state_names_no_failsafe(
+    tells_current_mode: bool, who: str
+) -> None:
+    """A pilot who selects RETURN because of the warning. It knows no CURRENT_MODE either."""
+    scene = Scene(
+        heartbeat(HOLD, True), ("EXTENDED_SYS_STATE", {"landed_state": IN_AIR}), ("GLOBAL_POSITION_INT", PLACE)
+    )
+    await scene.monitor.connect(1.0)
+    await scene.monitor.close()
+    scene.monitor.connected = True
+    scene.monitor.control.see(CommandSent(frozenset({HOLD})))
+    scene.heartbeat(HOLD, armed=True)
+    if tells_current_mode:
+        scene.mode(HOLD)
+    name, fields = heartbeat(RETURNING, True)
+    scene.hear(name, fields | {"system_status": 5})
+    authority = scene.monitor.telemetry().authority
+    assert (authority.who, authority.perhaps_failsafe) == (who, who == "pilot")
+    scene.hear(name, fields | {"system_status": 4})
+    assert scene.monitor.telemetry().authority.who == "pilot"
+    assert not scene.monitor.telemetry().authority.perhaps_failsafe
+
+
 async def test_a_vehicle_that_was_listened_to_for_long_enough_returns_for_its_pilot(
     holding: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
