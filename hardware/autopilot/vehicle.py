@@ -149,8 +149,10 @@ class MavsdkVehicle:
 
     def take_control(self) -> None:
         """The operator's explicit deed that lets commands pass again after somebody else took control."""
-        if self._monitor.control.authority.taken_by is not None:
-            self._monitor.mode_switch.taken_back(self._monitor.clock.now())
+        authority = self._monitor.control.authority
+        if authority.taken_by is not None:
+            if authority.who != "failsafe":  # which gives nothing back by a switch: one that moves now is a pilot's
+                self._monitor.mode_switch.taken_back(self._monitor.clock.now())
             self._monitor.control.see(OperatorTookControl())
             self._monitor.announce(OperatorInControl())
 
