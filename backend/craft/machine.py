@@ -70,6 +70,7 @@ from backend.craft.step import (
     measure,
     not_done,
     refuse_flight,
+    start_console_timers,
     tell_said,
     try_rung,
 )
@@ -304,9 +305,7 @@ def _link_down(step: CraftStep, given: LinkDown) -> None:
             if craft.phase in AUTOMATIC:
                 hold(step, given.because)
         case "console":
-            timers = step.search.mission.timers
-            step.do(StartTimer("console_hold", timers.console_lost_hold_s))
-            step.do(StartTimer("console_return", timers.console_lost_return_s))
+            start_console_timers(step)
         case _:
             assert_never(given.link)
 

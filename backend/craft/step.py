@@ -214,6 +214,13 @@ def cancel_timers(step: CraftStep) -> None:
     step.do(CancelTimer("order"))
 
 
+def start_console_timers(step: CraftStep) -> None:
+    """Until a console is back."""
+    timers = step.search.mission.timers
+    step.do(StartTimer("console_hold", timers.console_lost_hold_s))
+    step.do(StartTimer("console_return", timers.console_lost_return_s))
+
+
 # Orders are ladders: see ladder.py
 
 COMMAND: dict[Way, HoldVehicle | ReturnHome | Land] = {"hold": HoldVehicle(), "return": ReturnHome(), "land": Land()}

@@ -7,7 +7,15 @@ from typing import Literal
 from backend.craft.effects import CancelTimer, CancelWork
 from backend.craft.inputs import Restarted
 from backend.craft.state import AUTOMATIC, failsafe_has, ours_to_order, pilot_has
-from backend.craft.step import CraftStep, alert, cancel_timers, clear_alerts, clear_failsafe, insist
+from backend.craft.step import (
+    CraftStep,
+    alert,
+    cancel_timers,
+    clear_alerts,
+    clear_failsafe,
+    insist,
+    start_console_timers,
+)
 from backend.events import AuthorityChanged
 from backend.reasons import flight
 from hardware.authority import Authority
@@ -42,6 +50,8 @@ def _by_failsafe(step: CraftStep, heard: Authority) -> None:
     if step.craft.phase in AUTOMATIC | {"hold"} or (step.craft.phase == "manual" and heard.who == "failsafe"):
         step.do(CancelWork())
         clear_alerts(step, "pilot")
+        if step.craft.phase == "manual" and "console" in step.craft.links_down:
+            start_console_timers(step)  # the pilot that it was taken for had ended them
         _failsafe_flies(step, reason)
     elif heard.who == "failsafe" and _named(heard) is not None:
         alert(step, "vehicle", "caution", reason)

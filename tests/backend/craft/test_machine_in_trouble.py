@@ -218,6 +218,21 @@ def test_without_a_console_the_failsafes_own_return_is_left_to_bring_the_vehicle
     assert walk.craft.phase == "landing"
 
 
+def test_without_a_console_the_timers_run_on_where_a_failsafe_counted_as_a_pilots_for_a_moment() -> None:
+    """The failsafe may end in the air."""
+    timers = SPEC.timers
+    walk = CraftWalk().to("flying")
+    walk.give(inputs.LinkDown("console", LINK_LOST))
+    assert effects.CancelTimer("console_return") in walk.give(inputs.AuthorityHeard(PERHAPS_PILOT))
+    asked = walk.give(inputs.AuthorityHeard(replace(FAILSAFE, cause="position")))
+    assert walk.craft.phase == "hold"
+    assert effects.StartTimer("console_return", timers.console_lost_return_s) in asked
+    heard = CraftWalk().to("flying")
+    heard.give(inputs.AuthorityHeard(PERHAPS_PILOT))
+    asked = heard.give(inputs.AuthorityHeard(replace(FAILSAFE, cause="position")))
+    assert not any(isinstance(effect, effects.StartTimer) for effect in asked)
+
+
 def test_a_lost_vehicle_link_holds_and_on_return_the_hold_is_sent() -> None:
     walk = CraftWalk().to("flying")
     asked = walk.give(inputs.LinkDown("vehicle", LINK_LOST))
