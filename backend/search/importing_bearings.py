@@ -117,16 +117,16 @@ def _sources(
     upload: Upload, bearings: Sequence[RecordedBearing], before: Sequence[BearingMeasured | None]
 ) -> list[BearingSource]:
     """Of a log of several stations each of them, by the name under which it reports live: each has a compass. So has
-    one alone that has reported live. bearings: of one emitter, which may be those of one of the stations; before: the
-    same as they are known."""
+    one alone that has reported live; where the file names none and several did, nobody knows whose the others are.
+    bearings: of one emitter, which may be those of one of the stations; before: the same as they are known."""
     several = len({one.tag for one in upload.recording.bearings if one.tag}) > 1
-    live = {
-        one.tag: told.source
-        for one, told in zip(bearings, before, strict=True)
-        if told is not None and isinstance(told.source, PersonSource)
-    }
+    live: dict[str | None, set[str]] = {}
+    for one, told in zip(bearings, before, strict=True):
+        if told is not None and isinstance(told.source, PersonSource):
+            live.setdefault(one.tag, set()).add(told.source.name)
+    of = {tag: PersonSource(name=name) for tag, (name, *others) in live.items() if not others}
     other = ImportSource(recording_id=upload.recording_id)
-    return [live.get(one.tag) or (PersonSource(name=str(one.tag)) if several else other) for one in bearings]
+    return [of.get(one.tag) or (PersonSource(name=str(one.tag)) if several else other) for one in bearings]
 
 
 def _fact(

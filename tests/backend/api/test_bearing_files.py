@@ -130,6 +130,22 @@ async def test_a_log_that_went_on_brings_what_is_new(client, services):
     assert await known_of(services, mission_id) == [[], [3], [3]]
 
 
+async def test_what_is_new_in_a_file_that_names_no_station_is_nobodys_where_two_stations_are_known_of_it(
+    client, services
+):
+    mission_id = await draft(client)
+    log = kraken().replace("170000", "169999").splitlines()
+    for line in (log[0], log[1].replace("roof", "van")):
+        await report(client, mission_id, line)
+    rows = [
+        f"1,,{bearing_deg(lon, lat):.2f},1,{lat},{lon},,,{at_s},{at_s}"
+        for at_s, (lon, lat) in zip(range(1699990000, 1699991200, 300), PLACES, strict=True)
+    ]
+    assert (await bring(client, mission_id, "\n".join(rows))).status_code == 201
+    bearings = await facts(services, mission_id, "bearing_measured")
+    assert [one.source.kind for one in bearings] == ["person", "person", "import", "import"]
+
+
 async def test_what_another_station_heard_at_the_same_time_is_another_bearing(client, services):
     mission_id = await draft(client)
     roof, van = kraken(), kraken().replace("roof", "van")
