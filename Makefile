@@ -71,7 +71,7 @@ test: ## everything CI runs
 	$(call step,2/2,whole missions; what a user does on the page in Chromium; types in what these leave of the processors,ten minutes)
 	@$(MAKE) --no-print-directory -j 2 played check-types GIVING_WAY='nice -n 19'
 
-played: ## whole missions and stories, one after the other, since they wait for the wall's clock
+played: ## whole missions and stories, one after the other, since they wait for the wall clock
 	@$(MAKE) --no-print-directory system
 	@$(MAKE) --no-print-directory stories
 
@@ -117,7 +117,7 @@ coverage: kernel ## how much of the code the unit tests run: they take longer so
 	$(UNIT_TESTS) --cov --cov-report=
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
-# These wait for the wall's clock most of the time, so that more of them than there are cores go on beside one another;
+# These wait for the wall clock most of the time, so that more of them than there are cores go on beside one another;
 # and a machine that stands still for seconds fails them: what failed once is tried once more, and the summary names it
 # (RERUN), so that it is looked into.
 ONCE_MORE := --reruns 1 -rR

@@ -1,4 +1,4 @@
-"""Time as the mission sees it: the wall's, or a faster one for simulated missions.
+"""Time as the mission sees it: real time, or a faster one for simulated missions.
 
 Both run on the monotonic clock, so a step of the system's time (NTP, an operator) never moves a running mission.
 """
@@ -11,7 +11,7 @@ import time
 
 
 class ScaledClock:
-    """UTC that starts at `start_utc` (epoch seconds; None: now) and runs `factor` times as fast as the wall."""
+    """UTC that starts at `start_utc` (epoch seconds; None: now) and runs `factor` times as fast as real time."""
 
     def __init__(self, start_utc: float | None = None, factor: float = 1.0) -> None:
         if not (math.isfinite(factor) and factor > 0):

@@ -8,7 +8,7 @@ from hardware.ports import Clock
 
 
 class Deadline:
-    """Passed once `seconds` of the clock *and* `wall_floor_s` of the wall have gone by."""
+    """Passed once `seconds` of the clock *and* `wall_floor_s` of wall time have gone by."""
 
     def __init__(self, clock: Clock, seconds: float, wall_floor_s: float = 0.0) -> None:
         self._clock = clock

@@ -69,7 +69,7 @@ LOST_PERCENT = 1.0
 
 
 class Clock(Protocol):
-    """Time as the mission sees it; a simulated clock may run faster than the wall."""
+    """Time as the mission sees it; a simulated clock may run faster than real time."""
 
     def now(self) -> float:
         """UTC epoch seconds."""

@@ -102,7 +102,7 @@ def demo(
     headless: Annotated[bool, typer.Option("--headless", help="No browser: fly, print the result, stop.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the simulated world and of the planner.")] = 1,
     speedup: Annotated[
-        float | None, typer.Option(help="Simulated seconds a second of the wall. Default: 5, with --vehicle 1.")
+        float | None, typer.Option(help="Simulated seconds a second of real time. Default: 5, with --vehicle 1.")
     ] = None,
     flavour: Annotated[str | None, typer.Option(help="Simulated autopilot: px4 or ardupilot. Default: px4.")] = None,
     vehicle: Annotated[

@@ -45,7 +45,7 @@ def serve(
     ] = None,
     flavour: Annotated[str | None, typer.Option(help="Simulated autopilot: px4 or ardupilot. Default: px4.")] = None,
     speedup: Annotated[
-        float | None, typer.Option(help="Seconds of simulated time a second of the wall. Default: 1.")
+        float | None, typer.Option(help="Seconds of simulated time a second of real time. Default: 1.")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Of the simulated world: where the emitter stands.")] = None,
     world: Annotated[

@@ -34,7 +34,7 @@ CLOCK_ALLOWED_S = 0.25
 async def check_by_hand(
     equipment: CraftEquipment, mission: MissionSpec, emitter: Place | float, wait_s: float, by: str
 ) -> AntennaChecked:
-    """Listen until the vehicle was turned once all the way round, at most `wait_s` of the wall, and judge.
+    """Listen until the vehicle was turned once all the way round, at most `wait_s` of wall time, and judge.
 
     emitter: its place, or its bearing in degrees clockwise from true north. Raises MissionInputError when the vehicle's
     own place is not known.

@@ -155,7 +155,7 @@ class Hands:
             timer.cancel()
 
     async def _expire(self, name: effects.TimerName, seconds: float) -> None:
-        """Consoles and the people before them live in the wall's time, however fast a simulation runs."""
+        """Consoles and the people before them live in wall time, however fast a simulation runs."""
         if name in ("landing", "order", "battery_return"):
             await self._clock.sleep(seconds)
         else:

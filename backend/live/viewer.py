@@ -20,7 +20,7 @@ EVENTS_AT_ONCE = 50
 """After this many events a look at the slots, so that telemetry lives while a long journal is caught up with."""
 
 LITE_PERIOD_S: dict[SlotKind, float] = {"telemetry": 1.0, "sweep_progress": 1.0}
-"""Least time between two values of a slot for a lite viewer, in the wall's seconds."""
+"""Least time between two values of a slot for a lite viewer, in seconds of wall time."""
 
 SEND_S = 20.0
 

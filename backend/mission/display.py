@@ -27,7 +27,7 @@ class Display:
     flights: Flights
 
     async def run(self) -> None:
-        """Seconds of the wall, until cancelled."""
+        """Seconds of wall time, until cancelled."""
         publisher, clock = self.equipment.publisher, self.equipment.clock
         tick, orders = 0, self._orders()
         while True:

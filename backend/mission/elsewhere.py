@@ -22,7 +22,7 @@ from backend.search.other_area import task_or_reason
 log = logging.getLogger("crossfix.mission")
 
 AGAIN_S = 2.0
-"""Of the wall: how often it is asked whether nets that do not hang yet can be hung."""
+"""Wall time: how often it is asked whether nets that do not hang yet can be hung."""
 
 Running = Callable[[], MissionRunner | None]
 """The runner of the mission; None when it does not fly, or no longer."""

@@ -350,7 +350,7 @@ class Flights:
     async def leave(self, patience_s: float) -> list[LeftFlying]:
         """Hold what flies by itself before this server ends, and say how each craft in the air is left.
 
-        One that does not confirm it in time (seconds of the wall) is handed to its autopilot's failsafe: its link is
+        One that does not confirm it in time (seconds of wall time) is handed to its autopilot's failsafe: its link is
         closed at once, so that nothing of ours keeps that from acting.
         """
         self.ending, runner = True, self.active

@@ -27,7 +27,7 @@ from hardware.ports import HardwareError
 log = logging.getLogger("crossfix.mission")
 
 LOOK_S = 2.0
-"""Of the wall: how often it is asked whether what is owed can be settled."""
+"""Wall time: how often it is asked whether what is owed can be settled."""
 
 
 Record = Callable[[Event], Awaitable[None]]

@@ -49,7 +49,7 @@ class CrowdedError(TimeoutError):
 
 @asynccontextmanager
 async def patience(seconds: float) -> AsyncGenerator[None]:
-    """Raises TimeoutError after that many seconds of the wall in which an answer would have been noticed; StarvedError
+    """Raises TimeoutError after that many seconds of wall time in which an answer would have been noticed; StarvedError
     when an idle thread of this process was not heard from in time either, CrowdedError when the kernel says that the
     machine was short of processors and not of its disk."""
     loop = asyncio.get_running_loop()

@@ -219,7 +219,7 @@ async def keep_thin(
     keep_days None: raw sweeps are kept for ever; paths are packed all the same. seen: where days are counted for
     deleted missions, and for those whose sweeps are old. others: kept as long as the mission.
 
-    The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it. Since it may be wrong by
+    The wall clock counts, as everywhere in retention: a sped-up mission is no older for it. Since it may be wrong by
     years, a deleted mission also stays until the server has run on thirty days more (see `DaysSeen`), and so do sweeps
     that are old by the clock.
     """

@@ -26,7 +26,7 @@ class Hello(Model):
     mission_id: str | None
     last_seq: int
     time_factor: float
-    """Seconds of mission time a second of the wall (1 in the field, more in a simulated demo)."""
+    """Seconds of mission time a second of real time (1 in the field, more in a simulated demo)."""
 
 
 class EventMessage(Model):

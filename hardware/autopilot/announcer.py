@@ -19,7 +19,7 @@ class Wakeup:
         self._event.set()
 
     async def wait(self, wall_s: float = 0.1) -> None:
-        """Until something comes in, or `wall_s` of the wall have gone by. What came before is no news: look first."""
+        """Until something comes in, or `wall_s` of wall time have gone by. What came before is no news: look first."""
         self._event.clear()
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(wall_s):

@@ -29,12 +29,12 @@ _STEP_S, _STEP_COUNT = 1.0, 30
 @dataclass(slots=True)
 class LastingOddity:
     """Whether a rate stays odd: a simulated autopilot that catches up on a busy machine, or a link that lets go what it
-    held up, looks odd for some seconds of the wall, however fast the mission's clock runs."""
+    held up, looks odd for some seconds of wall time, however fast the mission's clock runs."""
 
     looks: int = 0
 
     def look(self, odd: bool) -> bool:
-        """Once a second of the wall. True from the ODD_LOOKS-th look on that finds it odd, in a row."""
+        """Once a second of real time. True from the ODD_LOOKS-th look on that finds it odd, in a row."""
         self.looks = self.looks + 1 if odd else 0
         return self.looks >= ODD_LOOKS
 

@@ -82,7 +82,7 @@ class Commander:
     """Sends commands for manoeuvres. Control and the manoeuvre are asked in the instant before each send.
 
     mode_heard: waits for the vehicle's next word of its mode, or until it has been silent about it long enough.
-    quickest_s: seconds of the wall from a question to its answer, at least, as the link is of late; 0: not known.
+    quickest_s: seconds of wall time from a question to its answer, at least, as the link is of late; 0: not known.
     """
 
     def __init__(

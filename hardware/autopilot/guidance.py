@@ -16,7 +16,7 @@ from hardware.reasons.vehicle import CommandName, ManoeuvreName, ModeNotShown, P
 from hardware.reasons.vehicle_news import TriedAgain
 
 GIVE_UP_LINK_WALL_S = 15.0
-"""A manoeuvre whose vehicle is silent for longer, by the wall, ends with VehicleUnreachable (the vehicle flies on)."""
+"""Wall time: a manoeuvre whose vehicle is silent for longer ends with VehicleUnreachable (the vehicle flies on)."""
 ATTEMPTS = 3
 DENIED_S = 1.0
 """Longer than this nothing waits for what the vehicle says of its mode after it has denied a command."""

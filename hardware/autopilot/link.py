@@ -105,7 +105,7 @@ class MavlinkLink:
         self.system_id = 0
 
     async def open(self, timeout_s: float) -> None:
-        """timeout_s: of the wall. Raises VehicleUnreachable when no autopilot answers."""
+        """timeout_s: of wall time. Raises VehicleUnreachable when no autopilot answers."""
         loop = asyncio.get_running_loop()
         if self._mavsdk is None:
             try:

@@ -227,7 +227,7 @@ class Monitor:
             self.look_at_link(looked - before)
 
     def look_at_link(self, elapsed_s: float) -> None:
-        """Is the vehicle still heard? elapsed_s: of the wall, since the last look."""
+        """Is the vehicle still heard? elapsed_s: of wall time, since the last look."""
         for text in self._texts.overdue(self.clock.now()):
             self._say(text, self.clock.now())
         if self.mode_switch.take_moved(self.clock.now()):

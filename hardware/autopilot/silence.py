@@ -8,14 +8,14 @@ import time
 from hardware.ports import Clock
 
 LONGEST_LOOK_S = 0.5
-"""Of the wall. A look that came later means that this program stood still: what waits to be read was not read late
+"""Wall time. A look that came later means that this program stood still: what waits to be read was not read late
 because of the vehicle."""
 
 
 class Silence:
-    """How long nothing was heard, in seconds of the wall in which it would have been noticed.
+    """How long nothing was heard, in seconds of wall time in which it would have been noticed.
 
-    A radio link and its messages live in the wall's time, however fast a simulation runs; and a look that came late
+    A radio link and its messages live in wall time, however fast a simulation runs; and a look that came late
     because this program stood still counts for `longest_look_s` only: what waits to be read was heard.
     """
 
@@ -28,12 +28,12 @@ class Silence:
         self.seconds = 0.0
 
     def look(self, elapsed_s: float) -> None:
-        """Nothing new; elapsed_s: of the wall, since the last look."""
+        """Nothing new; elapsed_s: of wall time, since the last look."""
         self.seconds += min(max(elapsed_s, 0.0), self._longest_look_s)
 
 
 class AfterSilence:
-    """For some time after a silence the vehicle may still act on it: by the clock and by the wall, each at least.
+    """For some time after a silence the vehicle may still act on it: by the clock and by the wall clock, each at least.
 
     Time in which this program stood still does not count (a busy machine loads a server for a minute): the mode of a
     failsafe that waited that long to be read is not a pilot's.

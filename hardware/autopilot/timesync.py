@@ -56,7 +56,7 @@ class Timesync:
 
     @property
     def quickest_s(self) -> float:
-        """From a question to its answer, at least, of late and by the wall; 0 before any was answered."""
+        """From a question to its answer, at least, of late and by the wall clock; 0 before any was answered."""
         return min(self._rounds_s, default=0.0)
 
     async def run(self) -> None:

@@ -104,7 +104,7 @@ class RtlTcpSource:
             raise ReceiverError(RtlTcpEnded(self._address, broken=True)) from error
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
-        """20 ms each. Time is counted in samples and held to the wall's clock (SampleClock)."""
+        """20 ms each. Time is counted in samples and held to the wall clock (SampleClock)."""
         reader = self._reader
         if reader is None:
             raise ReceiverError(ReceiverNotOpen())

@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.heading_time
 
-Simulated PX4 at the wall's speed, three turns at 30 degrees a second each: what the vehicle link says of the nose at a
+Simulated PX4 in real time, three turns at 30 degrees a second each: what the vehicle link says of the nose at a
 moment against where it truly was. Each case is a constant delay each way and a rate of the autopilot's clock. Prints
 one JSON object; ends with status 1 when a median is above 0.5 degrees.
 """

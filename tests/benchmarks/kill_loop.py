@@ -186,7 +186,7 @@ async def vehicle_time(folder: Path) -> float | None:
 
 
 async def told_after_s(folder: Path, since_s: float | None, speedup: float) -> float | None:
-    """Seconds of the wall from `since_s` until the vehicle was told to hold, None when it was not."""
+    """Seconds of wall time from `since_s` until the vehicle was told to hold, None when it was not."""
     if since_s is None:
         return None
     sent = (await (await simulated_vehicle(folder)).order("commands", since_s=since_s))["commands"]

@@ -4,7 +4,7 @@
     python -m tests.benchmarks.page_belief --missions 1 --bearings 12 --speedup 1.5
 
 Missions as they are suggested are flown, in a world of its own each, and their page watched; with --bearings, towards
-a goal that is not reached, until enough are painted. Times in ms of the wall: `server` from the arrival of the
+a goal that is not reached, until enough are painted. Times in ms of wall time: `server` from the arrival of the
 bearing's event in the browser to that of the belief or of its event, `frame` from there to that of the other, `page`
 from there until the map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is
 their sum. `repaints`: how often the map was drawn in `whole`. `work_ms` is what the server's parts need of one thread

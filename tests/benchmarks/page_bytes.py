@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.page_bytes --minutes 3 --speedup 1
 
-By kind of message, kilobytes (1000 bytes) of the websocket's content a minute of the wall. Both viewers must have got
+By kind of message, kilobytes (1000 bytes) of the websocket's content a minute of wall time. Both viewers must have got
 the same events.
 """
 

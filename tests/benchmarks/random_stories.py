@@ -35,9 +35,9 @@ ORDERS = ("hold", "resume", "return", "land", "abort", "start", "keep_holding")
 REACH = ("hold", "return", "land")
 MOST_ACTS = 6
 ANSWER_S = 60.0
-"""Of the wall, for an answer of the simulated vehicle."""
+"""Wall time, for an answer of the simulated vehicle."""
 OBEYED_S = 60.0
-"""Of the wall, for an order to be accepted and then seen at the vehicle, on a busy machine."""
+"""Wall time, for an order to be accepted and then seen at the vehicle, on a busy machine."""
 TRACEBACK = "Traceback (most recent call last)"
 
 Truth = dict[str, Any]

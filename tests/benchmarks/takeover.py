@@ -3,7 +3,7 @@
     python -m tests.benchmarks.takeover --flavour px4 --times 50
     python -m tests.benchmarks.takeover --flavour ardupilot --times 50
 
-A whole mission by the real server at the wall's speed; the simulated autopilot notes when each command arrives. The
+A whole mission by the real server in real time; the simulated autopilot notes when each command arrives. The
 pilot uses the mode switch or, on PX4, every other time the sticks. Besides, after each takeover an operator orders
 everything an operator can order: none of it may reach the vehicle before the pilot gives it back. Prints one JSON
 object; ends with status 1 when a command came later than 200 ms.

@@ -3,7 +3,7 @@
     python -m tests.benchmarks.takeover_aimed --flavour px4 --times 200
     python -m tests.benchmarks.takeover_aimed --flavour ardupilot --times 200
 
-A simulated vehicle alone, at the wall's speed, behind a radio of 0, 80 and 250 ms each way. The pilot strikes while it
+A simulated vehicle alone, in real time, behind a radio of 0, 80 and 250 ms each way. The pilot strikes while it
 steers (flight and turn: at moments around a command), takes off or returns, on PX4 every other time with the sticks. An
 order that selects a mode (also the one for steering, after the vehicle was given back in another) is awaited before:
 no autopilot carries it out on the condition that nobody switched meanwhile.

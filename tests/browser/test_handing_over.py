@@ -21,7 +21,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
 
 PILOTS = "POSCTL"
 WITHOUT_LINK_S = 45
-"""Simulated, 15 s of the wall's clock: the autopilot's failsafe acts after 10."""
+"""Simulated, 15 s of the wall clock: the autopilot's failsafe acts after 10."""
 
 
 def order(server: Server, mission: str, kind: str) -> dict[str, Any]:

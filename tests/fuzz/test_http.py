@@ -129,8 +129,8 @@ class Enough(BaseException):
 
 @dataclass
 class Answers:
-    """What the clients of one round saw. seen: how often each operation answered what. took_s: seconds of the wall that
-    each took in all. failures: the first says how to repeat it."""
+    """What the clients of one round saw. seen: how often each operation answered what. took_s: wall time, s, that each
+    took in all. failures: the first says how to repeat it."""
 
     seen: Counter[tuple[str, int]] = field(default_factory=Counter)
     took_s: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))

@@ -42,7 +42,7 @@ class Round:
     anyway. arrived_m: the same after an arrival.
 
     Heading errors in degrees while turning: median (signed) and 95 % of their amounts. clock_rate: the autopilot's
-    seconds in one of the wall's, over the turn.
+    seconds in one wall-clock second, over the turn.
     """
 
     delay_s: float

@@ -14,7 +14,7 @@ from processes import serving, vehicle_apart
 from hardware.sim.autopilot.launch import free_port
 
 SLOW_S = 0.5
-"""Each way, of the wall: a fence of some corners takes a good ten times as long."""
+"""Each way, of wall time: a fence of some corners takes a good ten times as long."""
 
 
 async def in_hold(shown: Console) -> None:

@@ -31,7 +31,7 @@ beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());
 
 describe("the recorded example", () => {
-  it("flies to its end at the speed of the wall: bearings, beliefs and all", async () => {
+  it("flies to its end in real time: bearings, beliefs and all", async () => {
     const source = new ExampleSource(async () => said, server);
     const early = fold(await played(source, 1_000));
     expect([early.mission.missionId, early.mission.ended]).toEqual([EXAMPLE_ID, null]);

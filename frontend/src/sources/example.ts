@@ -1,4 +1,4 @@
-// The example: a flight recorded from the server (scripts/record_example.py), told again at the speed of the wall.
+// The example: a flight recorded from the server (scripts/record_example.py), told again in real time.
 // A mission that really flies meanwhile is still seen and stopped from here.
 import type { Command, CommandReply, ExpectedTime, LiveMessage, PreflightReply, Track } from "../wire";
 import { type BeliefFrame, bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";

@@ -1936,7 +1936,7 @@ export interface components {
          *     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
          *     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
          *     cause: of the failsafe that flies, where the autopilot said it; before it flies: what it named last. named_at_s:
-         *     when.
+         *     when it named one last.
          *     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
          *     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
          *     given nothing back.

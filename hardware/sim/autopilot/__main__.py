@@ -82,7 +82,7 @@ def parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     p.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="where its nose points at first")
     p.add_argument(
-        "--speedup", type=_positive, default=1.0, metavar="S", help="run S times as fast as the wall (to 20)"
+        "--speedup", type=_positive, default=1.0, metavar="S", help="run S times as fast as real time (to 20)"
     )
     p.add_argument("--seed", type=int, default=1, help="of gusts and sensor noise")
     p.add_argument(
@@ -106,7 +106,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--link-delay", type=float, default=0.0, metavar="S", help="of the radio, each way, 0 to 5")
     p.add_argument(
         "--clock-rate", type=_positive, default=1.0, metavar="R",
-        help="the vehicle's seconds in one of the wall's (times S): 0.98 is an overloaded simulator",
+        help="the vehicle's seconds in one wall-clock second (times S): 0.98 is an overloaded simulator",
     )  # fmt: skip
     p.add_argument("--parent", type=int, metavar="PID", help="stop when this parent process is gone")
     p.add_argument(

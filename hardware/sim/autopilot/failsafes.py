@@ -47,7 +47,7 @@ class Failsafes(ABC):
     gcs_failsafe: bool = False
     transmitter_lost_until: float = -1.0
     gcs_timeout_floor: float = 0.0
-    """A ground station sends heartbeats by the wall's clock: sped up, no less than this many simulated seconds."""
+    """A ground station sends heartbeats by the wall clock: sped up, no less than this many simulated seconds."""
     _transmitter_lost_at: float | None = None
     _battery_failsafe: bool = False
     _position_failsafe: bool = False

@@ -35,8 +35,8 @@ class Schedule:
     """How time passes, and when the process ends. Wall seconds.
 
     station_timeout: a ground station is not taken for lost earlier, whatever the parameter says: its heartbeats come by
-    the wall's clock and its restart takes wall time, however fast the simulation runs.
-    clock_rate: the vehicle's seconds in one of the wall's times `speedup`: a cheap crystal, or an overloaded simulator.
+    the wall clock and its restart takes wall time, however fast the simulation runs.
+    clock_rate: the vehicle's seconds a wall-clock second, over `speedup`: a cheap crystal, or an overloaded simulator.
     parent: ends when this process (our parent) is gone. linger: ends when nobody was heard for this long, in seconds.
     """
 
@@ -125,7 +125,7 @@ class Process:
         return self._firmware.time < self._firmware.faults.link_lost_until
 
     def _arrival(self) -> float:
-        """When a packet sent now comes out of the radio, by the wall."""
+        """When a packet sent now comes out of the radio, by the wall clock."""
         return time.monotonic() + self._firmware.faults.link_delay / self._speedup
 
     def _send(self, packet: bytes) -> None:

@@ -48,7 +48,7 @@ async def test_a_lost_link_is_flagged_and_a_flight_survives_it(rig: Rig) -> None
 async def test_a_return_of_a_vehicle_that_is_heard_and_hears_nothing_is_the_failsafes(rig: Rig) -> None:
     vehicle, sim = rig.vehicle, rig.sim
     patience = "COM_DL_LOSS_T" if rig.name == "sim-px4" else "FS_GCS_TIMEOUT"
-    await sim.order("set_param", name=patience, value=2)  # as the rig has it, by the wall
+    await sim.order("set_param", name=patience, value=2)  # as the rig has it, by the wall clock
     await rig.airborne()
     await vehicle.preflight()  # reads it
     await rig.clock.sleep(1.0 * SPEEDUP)

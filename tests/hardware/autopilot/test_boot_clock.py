@@ -135,7 +135,7 @@ def test_a_busy_link_makes_no_clock_odd(answers: dict[str, bool]) -> None:
 
 
 def test_a_clock_that_stalls_for_an_instant_and_catches_up_is_not_odd() -> None:
-    """A simulator on a busy machine, ten times as fast as the wall: it is late by seconds, and in time again."""
+    """A simulator on a busy machine, ten times as fast as real time: it is late by seconds, and in time again."""
     link = Link(delay_s=0.02, jitter_s=0.02)
     link.error_s(30.0)
     for _ in range(12):

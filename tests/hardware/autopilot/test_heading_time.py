@@ -1,6 +1,6 @@
 """Headings against the truth, behind a slow radio and by a clock that is two percent off.
 
-The simulated autopilot and the link to it step in one time, which is no wall's. A process of its own answers the
+The simulated autopilot and the link to it step in one time, which is not wall time. A process of its own answers the
 question where the nose is with its last step: on a busy machine that was some time before it was asked.
 """
 

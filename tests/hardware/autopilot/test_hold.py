@@ -135,7 +135,7 @@ async def test_an_order_of_the_nose_that_was_lost_is_repeated_with_the_heading_o
     flying.hear("ATTITUDE", {"time_boot_ms": 2, "roll": 0.0, "pitch": 0.0, "yaw": 1.2, "yawspeed": -0.5})
     while flying.link.sent == [REPOSITION] * 2:
         await moves(flying, 5.0, 0.1)
-        await asyncio.sleep(0.02)  # an answer is waited for by the wall
+        await asyncio.sleep(0.02)  # an answer is waited for by the wall clock
     told = [fields["param4"] for fields in flying.link.fields if fields["command"] == REPOSITION]
     noses = [yaw for yaw in told if yaw is not None]
     assert noses == pytest.approx([2.0, 1.2])

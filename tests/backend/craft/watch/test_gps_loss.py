@@ -1,4 +1,4 @@
-"""From the loss of GPS to the alert and the hold, in the vehicle's own time: no wall's clock is in it."""
+"""From the loss of GPS to the alert and the hold, in the vehicle's own time: no wall clock is in it."""
 
 from __future__ import annotations
 
