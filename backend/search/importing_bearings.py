@@ -35,7 +35,7 @@ from hardware.readings import Place
 
 LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
 SAME_S, SAME_M, SAME_DEG = 1.0, 15.0, 0.1
-"""Two bearings of an emitter that differ by no more than all three are one that is told twice."""
+"""Two bearings of an emitter that differ by no more than all three are one bearing given twice."""
 
 
 def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str, *, believed: bool) -> Import:

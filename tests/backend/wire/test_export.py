@@ -133,7 +133,7 @@ def test_an_altitude_that_nobody_knows_is_not_sea_level(source) -> None:
 
 @pytest.mark.parametrize("source", [PersonSource(name="Ada"), ImportSource(recording_id="r1")])
 def test_the_homes_altitude_is_not_that_of_a_bearing_without_a_sweep(source) -> None:
-    """A bearing is told without an altitude, and has its mission's home's."""
+    """A bearing that comes without an altitude has its mission's home's."""
     told = by(source, 1, 200.0).model_copy(update={"sweep_id": None})
     recorded = numbered([mission(FOX)[0], started("craft-1", 200.0), told])
     assert [row[6:8] for row in rows(recorded)] == [["", ""]]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from flown_firmware import ARM, HOME, SET_MODE, TAKE_OFF, flying, make, run
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.ardupilot import ArduCopter
@@ -16,39 +17,13 @@ from hardware.sim.autopilot.firmware import (
     TEMPORARILY_REJECTED,
     UNSUPPORTED,
     Command,
-    Conditions,
     Firmware,
 )
-from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.px4 import Px4
 from hardware.sim.autopilot.telemetry import gps_raw_int
 
-ARM, TAKE_OFF, SET_MODE, REPOSITION, YAW, SPEED = 400, 22, 176, 192, 115, 178
-HOME = HomeFrame(47.4, 8.5, 488.0)
 BOTH = pytest.mark.parametrize("flavour", [Px4, ArduCopter])
-
-
-def run(firmware: Firmware, seconds: float) -> Firmware:
-    end = firmware.time + seconds
-    while firmware.time < end:
-        firmware.step(0.02)
-    return firmware
-
-
-def make(flavour: type[Px4] | type[ArduCopter], **conditions: object) -> Firmware:
-    return flavour(Conditions(home=HOME, **conditions))  # pyright: ignore[reportArgumentType]
-
-
-def flying(flavour: type[Px4] | type[ArduCopter], up: float = 20.0, **conditions: object) -> Firmware:
-    firmware = run(make(flavour, **conditions), 10.0)
-    if isinstance(firmware, ArduCopter):
-        assert firmware.command(Command(SET_MODE, 1.0, 4.0)) == ACCEPTED
-    assert firmware.command(Command(ARM, 1.0)) == ACCEPTED
-    z = up if isinstance(firmware, ArduCopter) else HOME.amsl_m + up
-    assert firmware.command(Command(TAKE_OFF, z=z)) == ACCEPTED
-    run(firmware, 25.0)
-    assert firmware.navigation.up == pytest.approx(up, abs=1.0)
-    return firmware
+REPOSITION, YAW, SPEED = 192, 115, 178
 
 
 def goto(north: float, east: float, up: float = 20.0, yaw: float = math.nan, flags: float = 1.0) -> Command:
@@ -259,39 +234,6 @@ def test_a_low_battery_ends_the_flight_by_itself(flavour: type[Px4]) -> None:
 
     assert firmware.mode in ("RETURN", "RTL")
     assert firmware.critical
-
-
-def texts(firmware: Firmware) -> list[str]:
-    return [message.text for message in firmware.outbox if isinstance(message, mavlink.MAVLink_statustext_message)]
-
-
-def test_px4_hovers_before_it_acts_says_both_and_gives_way_to_whoever_selects_a_mode() -> None:
-    firmware = flying(Px4)
-    firmware.transmitter_lost_until = math.inf
-    run(firmware, 2.0)
-    assert (firmware.mode, firmware.critical) == ("HOLD", True)
-    run(firmware, 4.0)
-    assert (firmware.mode, firmware.critical) == ("RETURN", True)
-    said = [text.strip() for text in texts(firmware)]
-    assert said[-2:] == ["Failsafe activated: entering Hold for 5 seconds", "Failsafe activated"]
-    firmware.switch_mode("RETURN")
-    assert (firmware.mode, firmware.critical) == ("RETURN", False)
-    again = flying(Px4)
-    again.transmitter_lost_until = math.inf
-    run(again, 2.0)
-    again.switch_mode("HOLD")
-    run(again, 10.0)
-    assert (again.mode, again.critical) == ("HOLD", False)
-
-
-def test_arducopter_acts_at_once_and_stays_critical() -> None:
-    firmware = flying(ArduCopter)
-    firmware.transmitter_lost_until = math.inf
-    run(firmware, 2.0)
-    assert (firmware.mode, texts(firmware)[-1]) == ("RTL", "Radio Failsafe")
-    firmware.switch_mode("BRAKE")
-    run(firmware, 2.0)
-    assert (firmware.mode, firmware.critical) == ("BRAKE", True)
 
 
 @BOTH
