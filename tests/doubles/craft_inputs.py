@@ -16,6 +16,7 @@ from facts import (
     HOME,
     LANDED_BY_PILOT,
     LINK_LOST,
+    NAMED_FAILSAFE,
     NO_ANSWER,
     NO_PLACE,
     NOBODY,
@@ -47,7 +48,7 @@ from hardware.reasons.vehicle_news import (
     ClockRateOdd,
 )
 
-AUTHORITIES = (OURS, PILOT, PERHAPS_PILOT, GIVEN_BACK, FAILSAFE, NOBODY, LANDED_BY_PILOT)
+AUTHORITIES = (OURS, PILOT, PERHAPS_PILOT, GIVEN_BACK, FAILSAFE, NAMED_FAILSAFE, NOBODY, LANDED_BY_PILOT)
 ORDERS: tuple[commands.ForCraft, ...] = (
     commands.Start(),
     commands.Hold(),

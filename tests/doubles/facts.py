@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from backend.craft.inputs import StartFacts
 from backend.events import (
     FIRST_CRAFT,
@@ -100,6 +102,7 @@ GIVEN_BACK = Authority(
 FAILSAFE = Authority(
     who="failsafe", taken_by="mode", taken_at_s=1_000.0, mode="RETURN", heard=3, kind="return", armed=True
 )
+NAMED_FAILSAFE = replace(FAILSAFE, cause="battery")
 LANDED_BY_FAILSAFE = Authority(
     who="nobody", taken_by="mode", taken_at_s=1_000.0, mode="RETURN", given_back=True, failsafe_landed=True, heard=1,
     kind="waiting",
