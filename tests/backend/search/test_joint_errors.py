@@ -211,6 +211,7 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
     tag = swinging.mission.emitters[0].model_copy(update={"kind": "pulsed"})
     pulsed = localization(swinging.mission.model_copy(update={"emitters": [tag]}), HOME)
     assert foreseen_for(pulsed, seen, belief).sigma == turn
+    assert foreseen_for(pulsed, (), JOINT.prior).sigma == first
     assert isinstance(belief, JointBelief)
     (errors,) = belief.errors
     own = [math.sqrt(sigma**2 - errors.bias_sd**2) for sigma in (turn, place)]
