@@ -96,7 +96,9 @@ def imported_before(mission_id: str, recorded: Sequence[Recorded], upload: Uploa
     for record in recorded:
         if isinstance(record.event, RecordingImported) and record.event.recording_id == upload.recording_id:
             source = ImportSource(recording_id=upload.recording_id)
-            ids = {bearing_id(mission_id, upload.recording_id, one.line) for one in upload.recording.bearings}
+            bearings = upload.recording.bearings
+            ids = {bearing_id(mission_id, upload.recording_id, one.line) for one in bearings}
+            ids |= {one.live_id for one in bearings if one.live_id is not None}
             return [record, *(r for r in recorded if _of(r.event, source, ids))]
     return []
 

@@ -139,11 +139,13 @@ def _fact(
     number: int,
     at_s: float | None,
 ) -> BearingMeasured:
+    """Under the id of the station's own report, where it has one: should that arrive later, it is known."""
     sigma_deg = min(max(one.sigma_deg, LEAST_SIGMA_DEG), MOST_SIGMA_DEG)
+    free = one.live_id is not None and state.bearing(one.live_id) is None
     return BearingMeasured(
         emitter_id=emitter.emitter_id,
         source=source,
-        bearing_id=bearing_id(mission_id, upload.recording_id, one.line),
+        bearing_id=str(one.live_id) if free else bearing_id(mission_id, upload.recording_id, one.line),
         sweep_id=None,
         place_number=number,
         place=one.place,

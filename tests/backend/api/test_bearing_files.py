@@ -120,6 +120,20 @@ async def test_a_stations_bearings_that_came_live_count_once_when_its_log_is_bro
     assert await known_of(services, mission_id) == [[2]]
 
 
+async def test_a_stations_bearings_that_come_after_their_log_count_once(client, services):
+    mission_id = await draft(client)
+    lines = kraken().splitlines()
+    assert (await bring(client, mission_id, "\n".join(lines))).status_code == 201
+    imported = await facts(services, mission_id, "bearing_measured")
+    reply = await client.post(f"/api/missions/{mission_id}/bearings/kraken", content=lines[0])
+    assert reply.status_code == 200, reply.text
+    assert await facts(services, mission_id, "bearing_measured") == imported
+    again = await bring(client, mission_id, "\n".join(lines))
+    assert again.status_code == 200, "the same file is known, bearings and all"
+    await report(client, mission_id, lines[0].replace("1700000000000", "1700000061500"))
+    assert len(await facts(services, mission_id, "bearing_measured")) == len(imported) + 1
+
+
 async def test_a_log_that_went_on_brings_what_is_new(client, services):
     mission_id = await draft(client)
     lines = kraken().splitlines()
