@@ -87,6 +87,12 @@ def flight(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterat
         yield made
 
 
+@pytest.fixture(autouse=True)
+def charged(flight: Flight) -> None:
+    """Or a slow machine tells the last of these stories of a craft that had to go home."""
+    flight.server.order("battery", percent=100)
+
+
 @pytest.fixture
 def second(flight: Flight) -> Iterator[Screen]:
     """The same server in another browser, muted."""
