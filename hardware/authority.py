@@ -95,7 +95,8 @@ class ModeHeard:
 
     mode: the token; name: for people. armed: None while it is not known since a silence. after_silence: the vehicle, or
     this server, was silent until a moment ago, so a failsafe may be acting on that. at_s: UTC. acts: whether this mode
-    is a failsafe's choice, by the autopilot's own word; None: it does not say.
+    is a failsafe's choice, by the autopilot's own word; None: it does not say. waits_again: this autopilot goes on
+    waiting by itself once it knows its place again.
     """
 
     mode: int
@@ -106,6 +107,7 @@ class ModeHeard:
     after_silence: bool
     at_s: float
     acts: bool | None = None
+    waits_again: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -338,9 +340,9 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
             return now
         if homeward and before.cause is not None and not seen.after_silence and _selected_by_hand(before, seen):
             return _taken(now, "pilot", "mode", seen.at_s, seen)
-        if homeward or (waiting and (seen.after_silence or before.cause == "position")):
-            # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command,
-            # and PX4 waits again once it knows its place
+        waits_again = before.cause == "position" and seen.waits_again
+        if homeward or (waiting and (seen.after_silence or waits_again)):
+            # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command
             return replace(now, mode=seen.name, given_back=waiting)
         return _taken(now, "pilot", "mode", seen.at_s, seen)
     late = seen.at_s >= (now.taken_at_s or 0.0) + GIVEN_BACK_S

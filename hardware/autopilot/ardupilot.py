@@ -90,6 +90,7 @@ ARDUPILOT = Dialect(
         )
     ),
     state_tells_failsafe=False,
+    waits_again=False,
     place_refused_texts=(),
     hold=(set_mode((BRAKE, 0)),) * 3,
     hold_modes=frozenset({BRAKE}),

@@ -338,6 +338,7 @@ class Monitor:
                 after_silence=self._after_silence.look() or not self.connected,
                 at_s=snapshot.mode_at_s or self.clock.now(),
                 acts=self._dialect.failsafe_acts(state, snapshot.tells_current_mode),
+                waits_again=self._dialect.waits_again,
             )
         )
 

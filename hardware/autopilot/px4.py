@@ -103,6 +103,7 @@ PX4 = Dialect(
         homeward_actions=frozenset({6, 7, 8}),
     ),
     state_tells_failsafe=True,
+    waits_again=True,
     place_refused_texts=("Reposition is outside geofence",),
     # twice without a mode: a slow PX4 that already holds is sent nothing that could undo a pilot
     hold=(pause_here(), pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),

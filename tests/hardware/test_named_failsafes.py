@@ -151,6 +151,16 @@ def test_after_a_failsafe_for_its_place_it_may_wait_again_by_itself_after_others
     assert craft.hears(HOLD).who == "pilot"
 
 
+def test_who_stops_the_landing_of_an_autopilot_that_never_waits_again_by_itself_is_a_pilot() -> None:
+    """ArduCopter lands for its place to the ground, even when that is known again: only a hand selects BRAKE."""
+    craft = flying(HOLD)
+    named(craft, "position")
+    craft.hears(LAND)
+    craft.waits(GIVEN_BACK_S)
+    stopped = ModeHeard(HOLD, "waiting", "BRAKE", True, True, False, craft.at_s, waits_again=False)
+    assert craft.sees(stopped).who == "pilot"
+
+
 def test_an_undone_switch_stays_the_pilots() -> None:
     craft = flying(GUIDED)
     craft.commands(RETURN)

@@ -9,6 +9,7 @@ from paper import IN_AIR, ON_GROUND, PLACE, POSCTL, Scene, heartbeat
 
 from hardware.authority import Authority, CommandSent
 from hardware.autopilot import monitor
+from hardware.autopilot.ardupilot import BRAKE, GUIDED, LAND
 from hardware.autopilot.messages import HEARTBEAT_ID, SET_MESSAGE_INTERVAL
 from hardware.autopilot.monitor import AFTER_SILENCE_S, LINK_LOST_WALL_S, STREAMS
 from hardware.autopilot.px4 import HOLD, LANDING, RETURNING
@@ -260,3 +261,20 @@ async def test_connecting_asks_for_the_heartbeat_and_waits_for_no_answer_to_the_
 
     assert (telemetry.mode, telemetry.armed, telemetry.authority.who) == ("HOLD", True, "nobody")
     assert sent.count(SET_MESSAGE_INTERVAL) == len(STREAMS) + 1
+
+
+async def test_an_arducopter_that_is_stopped_while_it_lands_for_its_position_is_a_pilots() -> None:
+    def beat(mode: int) -> tuple[str, dict[str, int]]:
+        return "HEARTBEAT", {"custom_mode": mode, "base_mode": 1 | 128, "autopilot": 3, "system_status": 5}
+
+    scene = Scene(beat(GUIDED), ("EXTENDED_SYS_STATE", {"landed_state": IN_AIR}), ("GLOBAL_POSITION_INT", PLACE))
+    await scene.monitor.connect(1.0)
+    await scene.monitor.close()
+    scene.monitor.connected = True
+    scene.monitor.control.see(CommandSent(frozenset({GUIDED})))
+    scene.hear("STATUSTEXT", {"severity": 2, "text": "EKF Failsafe: changed to LAND Mode", "id": 0, "chunk_seq": 0})
+    scene.hear(*beat(LAND))
+    assert scene.monitor.telemetry().authority.cause == "position"
+    scene.clock.at += 10.0
+    scene.hear(*beat(BRAKE))
+    assert scene.monitor.telemetry().authority.who == "pilot"
