@@ -295,7 +295,8 @@ def _taken(
     cause = None
     if who == "failsafe" and heard is not None:
         named = _named_lately(authority, at_s)
-        cause = authority.cause if named else "other" if heard.acts and not heard.after_silence else None
+        acts = "silence" if heard.after_silence else "other"
+        cause = authority.cause if named else acts if heard.acts else None
     return replace(
         _nothing_commanded(authority),
         who=who,
@@ -343,7 +344,8 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
         waits_again = before.cause == "position" and seen.waits_again
         if homeward or (waiting and (seen.after_silence or waits_again)):
             # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command
-            return replace(now, mode=seen.name, given_back=waiting)
+            cause = before.cause or ("silence" if homeward and seen.acts else None)
+            return replace(now, mode=seen.name, given_back=waiting, cause=cause)
         return _taken(now, "pilot", "mode", seen.at_s, seen)
     late = seen.at_s >= (now.taken_at_s or 0.0) + GIVEN_BACK_S
     again = seen.mode == before.heard

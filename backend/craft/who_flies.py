@@ -39,7 +39,7 @@ def authority_heard(step: CraftStep, heard: Authority) -> None:
         reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
         alert(step, "pilot", "caution", reason)
         step.go("manual", reason)
-    elif failsafe_has(heard) and (not failsafe_has(before) or heard.cause != before.cause):
+    elif failsafe_has(heard) and (not failsafe_has(before) or _named(heard) != _named(before)):
         _by_failsafe(step, heard)
 
 

@@ -98,7 +98,7 @@ class Dialect:
     failsafe may enter by itself. takeover_text: the beginning of the text by which the autopilot reports the sticks.
     failsafe_words: how it names a failsafe of its own. state_tells_failsafe: the state in its heartbeat is critical
     while one has chosen the mode, and active as soon as a pilot has; ArduCopter's stays critical.
-    waits_again: after a failsafe for its place it goes on waiting by itself, once it knows that again; ArduCopter lands.
+    waits_again: it goes on waiting by itself after a failsafe for its place; ArduCopter lands.
     mode_report: the message that tells the mode, and how often to ask for it (Hz). Both autopilots send it at once when
     the mode has changed; when that is lost the next one tells it. PX4 sends CURRENT_MODE at most so often, and twice a
     second when nothing changed: a fast rate costs nothing and shows a mode that lasted for an instant. ArduCopter 4.7

@@ -249,3 +249,25 @@ def test_what_leaves_the_waiting_of_a_vehicle_that_knows_its_place_again_is_a_pi
     craft.hears(HOLD)
     craft.waits(10.0)
     assert craft.hears(LAND).who == "pilot"
+
+
+def test_who_takes_a_way_home_from_a_failsafe_that_only_the_state_told_is_a_pilot() -> None:
+    """It began while the link was silent, so that its name was not heard."""
+    for mode in (RETURN, LAND):
+        craft = flying(HOLD)
+        assert craft.hears(RETURN, after_silence=True).cause is None
+        assert says(craft, acts=True).cause == "silence"
+        craft.waits(60.0)
+        assert says(craft, acts=False, mode=mode).who == "pilot"
+    landing = flying(HOLD)
+    landing.hears(RETURN, after_silence=True)
+    says(landing, acts=True)
+    landing.hears(LAND)
+    assert says(landing, acts=True, mode=LAND).who == "failsafe"
+
+
+def test_a_return_of_our_own_that_a_restarted_server_knows_nothing_of_stays_no_pilots() -> None:
+    craft = flying(HOLD)
+    craft.sees(ServerRestarted())
+    assert craft.hears(RETURN, after_silence=True).who == "failsafe"
+    assert says(craft, acts=False, later_s=60.0).who == "failsafe"
