@@ -91,6 +91,13 @@ export function foldCraft(state: CraftState, event: MissionEvent, seq: number, a
         phaseSince: at,
         returnsAt: null,
       };
+    case "hold_ordered":
+      // a failsafe that flew in hold until then changed no phase, and neither does the order
+      return event.by === null || state.phase !== "hold"
+        ? state
+        : { ...state, phaseReason: { code: "ordered", order: "hold", by: event.by } };
+    case "resume_ordered":
+      return state.phase === "hold" ? { ...state, phaseReason: { code: "ordered", order: "resume", by: event.by } } : state;
     case "battery_countdown_started":
       return { ...state, returnsAt: new Date(Date.parse(at) + event.seconds * 1000).toISOString() };
     case "battery_countdown_stopped":

@@ -1,5 +1,5 @@
 // @vitest-environment happy-dom
-import { afterEach, describe, expect, it } from "vitest";
+import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { reasonText, setLanguage, t } from "../i18n";
 import { formatBearing, formatNumber } from "../units/quantities";
 import type { EventOf, MissionEvent } from "../wire";
@@ -150,6 +150,52 @@ it("says neither that it holds while its failsafe flies, nor that it flies once 
   expect(doing(started(), phase("hold", someReason), landed)).toBe(t("state.ground"));
   expect(doing(started(), phase("hold", someReason), landed, cleared)).toBe(t("state.hold", { reason: reasonText(someReason) }));
   expect(doing(started(), phase("hold", someReason), { ...landed, craft_id: "another" })).not.toBe(t("state.ground"));
+});
+
+describe.each(["en", "de"] as const)("a failsafe in hold, in words: %s", (language) => {
+  const flies = { code: "failsafe_flies", because: "position" } as const;
+  const ordered = { code: "ordered", order: "hold", by: "Ada" } as const;
+  const authority = (changes: Partial<typeof NOBODY>): MissionEvent => ({
+    ...{ kind: "authority_changed", craft_id: CRAFT, by: null },
+    authority: { ...NOBODY, ...changes },
+  });
+  const alert = (alert_id: string, reason: EventOf<"alert_raised">["reason"]): MissionEvent => ({
+    ...{ kind: "alert_raised", alert_id, topic: "vehicle", level: "caution", craft_id: CRAFT, emitter_id: null },
+    reason,
+  });
+  const taken = authority({ who: "failsafe", taken_by: "mode", mode: "LAND" });
+  const began = [taken, alert("a", flies)];
+  const over: MissionEvent = { kind: "alert_cleared", alert_id: "a" };
+
+  beforeEach(() => setLanguage(language));
+  afterEach(() => setLanguage("en"));
+
+  it("that began in a hold that was ordered", () => {
+    expect(doing(started(), phase("hold", ordered), ...began)).toBe(reasonText(flies));
+    expect(doing(started(), phase("hold", ordered), taken)).toBe(t("control.failsafe", { mode: "LAND" }));
+  });
+
+  it("that an operator ended", () => {
+    const ours = [over, authority({ who: "ours" })];
+    const holds = t("state.hold", { reason: reasonText(ordered) });
+    expect(doing(started(), phase("hold", flies), ...began, ...ours, held("Ada", null))).toBe(holds);
+    const resumed: MissionEvent = { kind: "resume_ordered", craft_id: CRAFT, by: "Ada" };
+    expect(doing(started(), phase("hold", flies), ...began, resumed, ...ours)).not.toContain(reasonText(flies));
+  });
+
+  it("that stopped by itself, and that landed", () => {
+    const stopped = { code: "failsafe_stopped", mode: "HOLD" } as const;
+    const waits = authority({ who: "failsafe", taken_by: "mode", mode: "HOLD", given_back: true });
+    const holds = t("state.hold", { reason: reasonText(stopped) });
+    expect(doing(started(), phase("hold", flies), ...began, waits, over, alert("b", stopped))).toBe(holds);
+    const down = authority({ who: "nobody", taken_by: "mode", failsafe_landed: true });
+    expect(doing(started(), phase("hold", flies), ...began, down)).toBe(t("state.ground"));
+  });
+
+  it("that flies a vehicle which stood on the ground before", () => {
+    const stood: MissionEvent = { ...(alert("g", { code: "landed", during: "hold" }) as EventOf<"alert_raised">), topic: "ground" };
+    expect(doing(started(), phase("hold", ordered), stood, ...began)).toBe(reasonText(flies));
+  });
 });
 
 it("says what the mission does in every phase, and why it ended", () => {

@@ -35,10 +35,20 @@ const HOLDING_LINK: Partial<Record<ReasonCode, LinkName>> = {
   payload_link_lost: "payload",
 };
 
-/** Why the craft stands still, unless it stands on the ground or its failsafe flies; a link that is back since is said to be back. */
-function holdWords({ phaseReason, lost, alerts, craftId }: MissionView, reason: string): string {
-  if (alerts.some((alert) => alert.topic === "ground" && alert.craftId === craftId && !alert.cleared)) return t("state.ground");
-  if (phaseReason?.code === "failsafe_flies") return reason;
+/**
+ * Why the craft stands still, unless it stands on the ground or its failsafe flies, which may have begun, or ended, since it
+ * holds; a link that is back since is said to be back.
+ */
+function holdWords({ phaseReason, lost, alerts, craftId, authority }: MissionView, reason: string): string {
+  const { who, mode, given_back, failsafe_landed } = authority;
+  const open = alerts.filter((alert) => alert.craftId === craftId && !alert.cleared);
+  const [flies, stopped] = [who === "failsafe" && !given_back, who === "failsafe" && given_back];
+  const told = open.find(({ topic }) => topic === "vehicle")?.reason;
+  if (failsafe_landed || (!flies && open.some(({ topic }) => topic === "ground"))) return t("state.ground");
+  if (flies && told?.code === "failsafe_flies") return reasonText(told);
+  if (phaseReason?.code === "failsafe_flies" && !stopped) return reason;
+  if (flies) return whoFlies(who, mode ?? "", false);
+  if (stopped && told) return t("state.hold", { reason: reasonText(told) });
   const link = phaseReason && HOLDING_LINK[phaseReason.code];
   return link && !lost[link] ? t("state.hold.back", { link: t(`link.${link}` satisfies MessageKey) }) : t("state.hold", { reason });
 }
