@@ -69,7 +69,8 @@ class CraftState:
     the specification (see `retakes`). taken: its bearings, each with its place, left_out: those of them that do not
     count. avoid: places vetoed or without a usable sweep since the last bearing, or since the search area changed.
     refused: places that the autopilot would not fly to, since the search area changed; refused_in_a_row: how many of
-    the last ones were refused. return_reason: why it is on its way home. ladder: of the hold, return or landing that
+    the last ones were refused. return_reason: why it is on its way home. taken_from: the phase in which a
+    pilot, or who seemed one, took it, while it is flown by hand. ladder: of the hold, return or landing that
     was ordered last; None once something else has come of it. counting_down: it returns soon because its battery runs
     low; countdown_stopped: somebody has stopped that, which they may once a flight. antenna: that it has flown with;
     None: nobody kept it. nets_wait: the autopilot's own fence is not known to be that of the search area.
@@ -95,6 +96,7 @@ class CraftState:
     refused: tuple[Place, ...] = ()
     refused_in_a_row: int = 0
     return_reason: Reason | None = None
+    taken_from: Phase | None = None
     ladder: Ladder | None = None
     counting_down: bool = False
     countdown_stopped: bool = False
@@ -158,7 +160,7 @@ def evolve(state: CraftState, event: Event) -> CraftState:
             return replace(state, nets_wait=False)
         case MissionStarted(antenna=antenna):
             return replace(state, engaged=True, searching=True, nets_wait=False, antenna=antenna)
-        case PhaseChanged(after=after, reason=reason):
+        case PhaseChanged(before=before, after=after, reason=reason):
             back = reason if after == "returning" else state.return_reason
             up = after != "ground"
             ordered = after in HOMEWARD or after == "hold"
@@ -168,6 +170,7 @@ def evolve(state: CraftState, event: Event) -> CraftState:
                 phase_reason=reason,
                 reached=state.reached and after in ("planning", "measuring"),
                 return_reason=back,
+                taken_from=before if after == "manual" else None,
                 ladder=state.ladder if ordered else None,
                 engaged=state.engaged and up,
                 searching=state.searching and up,

@@ -6,7 +6,7 @@ from typing import Literal
 
 from backend.craft.effects import CancelTimer, CancelWork
 from backend.craft.inputs import Restarted
-from backend.craft.state import AUTOMATIC, failsafe_has, ours_to_order, pilot_has
+from backend.craft.state import AUTOMATIC, HOMEWARD, failsafe_has, ours_to_order, pilot_has
 from backend.craft.step import (
     CraftStep,
     alert,
@@ -52,7 +52,12 @@ def _by_failsafe(step: CraftStep, heard: Authority) -> None:
         clear_alerts(step, "pilot")
         if step.craft.phase == "manual" and "console" in step.craft.links_down:
             start_console_timers(step)  # the pilot that it was taken for had ended them
-        _failsafe_flies(step, reason)
+        homeward = step.craft.taken_from
+        if homeward in HOMEWARD:
+            alert(step, "vehicle", "caution", reason)
+            step.go(homeward, step.craft.return_reason or reason)
+        else:
+            _failsafe_flies(step, reason)
     elif heard.who == "failsafe" and _named(heard) is not None:
         alert(step, "vehicle", "caution", reason)
 

@@ -14,6 +14,7 @@ from facts import (
     GIVEN_BACK,
     HOME,
     LINK_LOST,
+    NAMED_FAILSAFE,
     NO_ANSWER,
     NO_TAKE_OFF,
     OURS,
@@ -368,3 +369,18 @@ def test_alerts_of_two_craft_are_told_apart_and_a_later_one_on_a_topic_takes_the
         ]
     ids = [{raised.alert_id for raised in walk.of_kind(AlertRaised)} for walk in walks]
     assert not ids[0] & ids[1]
+
+
+@pytest.mark.parametrize("phase", HOMEWARD)
+def test_a_failsafe_on_an_ordered_way_home_ends_alike_whichever_of_its_mode_and_its_name_is_heard_first(
+    phase: Phase,
+) -> None:
+    for heard in ((NAMED_FAILSAFE,), (PERHAPS_PILOT, NAMED_FAILSAFE)):
+        walk = craft_in(phase)
+        for authority in heard:
+            assert not sent(walk.give(inputs.AuthorityHeard(authority)))
+        assert walk.craft.phase == phase
+        assert walk.topics == ["vehicle"]
+        assert walk.last_alert.reason == FailsafeFlies("battery")
+        walk.give(inputs.Landed())
+        assert (walk.craft.phase, walk.craft.engaged, walk.search.stage) == ("ground", False, "ended")
