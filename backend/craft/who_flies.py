@@ -39,6 +39,8 @@ def authority_heard(step: CraftStep, heard: Authority) -> None:
         reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
         alert(step, "pilot", "caution", reason)
         step.go("manual", reason)
+    elif heard.who == "pilot" and before.perhaps_failsafe and not heard.perhaps_failsafe:
+        alert(step, "pilot", "caution", flight.PilotFlies(heard.mode or ""))
     elif failsafe_has(heard) and (not failsafe_has(before) or _named(heard) != _named(before)):
         _by_failsafe(step, heard)
 

@@ -384,3 +384,11 @@ def test_a_failsafe_on_an_ordered_way_home_ends_alike_whichever_of_its_mode_and_
         assert walk.last_alert.reason == FailsafeFlies("battery")
         walk.give(inputs.Landed())
         assert (walk.craft.phase, walk.craft.engaged, walk.search.stage) == ("ground", False, "ended")
+
+
+def test_a_pilot_of_whom_there_is_no_doubt_any_more_is_said_to_be_one() -> None:
+    walk = craft_in("flying")
+    walk.give(inputs.AuthorityHeard(PERHAPS_PILOT))
+    walk.give(inputs.AuthorityHeard(replace(PERHAPS_PILOT, perhaps_failsafe=False)))
+    assert walk.last_alert.reason == PilotFlies("RETURN", perhaps_failsafe=False)
+    assert walk.topics == ["pilot"]
