@@ -169,13 +169,14 @@ def test_a_newer_order_takes_the_place_of_the_one_under_way() -> None:
             assert effects.CancelTimer("order") in step.asked, step.about
 
 
-def test_whoever_takes_the_vehicle_ends_every_order_of_ours() -> None:
+def test_whoever_takes_the_vehicle_ends_every_order_and_all_work_of_ours() -> None:
     for step in steps():
         heard = step.given.authority if isinstance(step.given, inputs.AuthorityHeard) else None
         taken = heard if heard is not None and (pilot_has(heard) or heard.who == "failsafe") else None
         if taken is not None and step.craft.engaged and kept_of(taken) != kept_of(step.craft.authority):
             assert step.after.ladder is None, step.about
             assert effects.CancelTimer("order") in step.asked, step.about
+            assert step.craft.phase not in AUTOMATIC or effects.CancelWork() in step.asked, step.about
         if step.after.taken_over or step.after.authority.who == "failsafe":
             assert step.after.ladder is None, step.about
 
