@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -12,6 +13,8 @@ from hardware.authority import FailsafeCause
 ANNOUNCED_S = 30.0
 """So long after a cause was told, or an act announced, both are of one failsafe: PX4 hovers before it acts, for 25 s at
 most (COM_FAIL_ACT_T)."""
+EVENTS_KEPT = 64
+"""PX4 says an event again when a station that shares the link asks for it, and keeps fewer than these for that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +60,7 @@ class FailsafeNames:
     def __init__(self) -> None:
         self._cause: tuple[FailsafeCause, float] = ("other", -math.inf)
         self._announced_at_s = -math.inf
+        self._heard: deque[tuple[int, int]] = deque(maxlen=EVENTS_KEPT)
 
     def text(self, words: FailsafeWords, text: str, at_s: float) -> FailsafeCause | None:
         """Why a failsafe acts, when `text` says that one does; text: the beginning of one, of 50 bytes at most."""
@@ -68,7 +72,12 @@ class FailsafeNames:
         return self._told(acts, said.tells == "will_act", said.cause, at_s)
 
     def event(self, words: FailsafeWords, fields: Mapping[str, Any], at_s: float) -> FailsafeCause | None:
-        """Likewise of EVENT."""
+        """Likewise of EVENT; one that was heard already is no news."""
+        number = int(fields.get("sequence", -1)), int(fields.get("event_time_boot_ms", -1))
+        if number[0] >= 0:
+            if number in self._heard:
+                return None
+            self._heard.append(number)
         event = words.events.get(int(fields["id"]) & 0xFFFFFF)
         arguments = fields["arguments"]
         if event is None or int(arguments[4]) not in words.homeward_actions:

@@ -139,6 +139,15 @@ async def test_a_return_that_px4_explains_by_an_event_is_the_failsafes(holding: 
     assert (authority.who, authority.cause) == ("failsafe", "transmitter")
 
 
+async def test_an_event_that_another_station_asked_for_again_names_no_failsafe(holding: Scene) -> None:
+    event = {"id": 0x0194CA8A, "arguments": RETURNS_UNHEARD_TRANSMITTER, "sequence": 17, "event_time_boot_ms": 1000}
+    holding.hear("EVENT", event)
+    holding.clock.at += 20.0
+    holding.hear("EVENT", event)
+    holding.mode(RETURNING)
+    assert holding.monitor.telemetry().authority.who == "pilot"
+
+
 async def test_a_return_that_px4_announced_is_the_failsafes_until_its_state_tells_of_a_pilot(holding: Scene) -> None:
     for text in ("Critical battery\t", "Failsafe activated: entering Hold for 5 seconds\t"):
         holding.hear("STATUSTEXT", {"severity": 2, "text": text})
