@@ -22,7 +22,7 @@ from starlette.datastructures import Headers
 from starlette.routing import BaseRoute, compile_path
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from backend.api.guard import SAFE_METHODS, refuse
+from backend.api.guard import SAFE_METHODS, place_of, refuse
 from backend.api.problems import ApiProblem, retry_after
 from backend.auth.access import Access
 from backend.auth.keeping import Denied
@@ -279,9 +279,10 @@ def cookie_of(scope: Scope, headers: Headers) -> str | None:
 
 def _from_own_page(scope: Scope, headers: Headers) -> bool:
     """The guard has refused a foreign Origin; here it must be there, and no http page may speak for an https one."""
-    origin = urlsplit(headers.get("origin", ""))
-    same = origin.netloc.lower() == headers.get("host", "").lower()
-    return bool(origin.netloc) and same and (origin.scheme == "https" or not encrypted(scope))
+    origin = headers.get("origin", "")
+    place = place_of(origin)
+    same = place == headers.get("host", "").lower()
+    return bool(place) and same and (urlsplit(origin).scheme == "https" or not encrypted(scope))
 
 
 def _note(

@@ -55,7 +55,7 @@ class Guard:
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return None
         origin = headers.get("origin")
-        if origin is None or urlsplit(origin).netloc.lower() == host.lower():
+        if origin is None or place_of(origin) == host.lower():
             return None
         return problem(403, reasons.ForeignOrigin(origin[:100]))
 
@@ -73,6 +73,14 @@ class Guard:
         except ValueError:
             return name in self._allowed
         return True
+
+
+def place_of(origin: str) -> str:
+    """Host and port that an Origin names, in small letters; "": it names none, or is no address at all."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:  # a bracket without its pair
+        return ""
 
 
 async def refuse(

@@ -35,7 +35,12 @@ async def test_a_rebound_name_is_refused(client, host):
     assert reply.headers["content-type"] == "application/problem+json"
 
 
-@pytest.mark.parametrize("origin", ["http://evil.example", "null", "http://127.0.0.1:9999", "http://localhost"])
+NO_ADDRESS = ["http://[", "http://[::1", "http://a]b"]
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "null", "http://127.0.0.1:9999", "http://localhost", *NO_ADDRESS]
+)
 async def test_a_foreign_page_changes_nothing(client, origin):
     reply = await client.post("/api/areas", json={"text": "{}"}, headers={"origin": origin})
     assert reply.status_code == 403
@@ -47,9 +52,10 @@ async def test_our_own_page_and_programs_may_write(client):
         assert (await client.post("/api/areas", json={"text": "{}"}, headers=headers)).status_code == 422
 
 
-async def test_a_foreign_page_gets_no_websocket(served):
+@pytest.mark.parametrize("origin", ["http://evil.example", *NO_ADDRESS])
+async def test_a_foreign_page_gets_no_websocket(served, origin):
     with pytest.raises(websockets.InvalidStatus) as refused:
-        await websockets.connect(f"ws://{served}/api/live", origin=Origin("http://evil.example"))
+        await websockets.connect(f"ws://{served}/api/live", origin=Origin(origin))
     assert refused.value.response.status_code == 403
     async with websockets.connect(f"ws://{served}/api/live", origin=Origin(f"http://{served}")) as websocket:
         assert "hello" in a(str, await websocket.recv())
