@@ -11,6 +11,7 @@ import asyncio
 import logging
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from backend.auth.records import Records, Row
@@ -19,6 +20,9 @@ from backend.reasons import Reason
 from planner.reason import ReasonedError
 
 log = logging.getLogger("crossfix.access")
+
+REMOVE_EVERY_S = 5.0
+"""So often the database is asked again to remove what has ended."""
 
 
 class Denied(ReasonedError):
@@ -41,6 +45,8 @@ class Keeping:
     monotonic_s: Callable[[], float] = time.monotonic
     changing: asyncio.Lock = field(default_factory=asyncio.Lock)
     _writing: set[asyncio.Task[None]] = field(default_factory=set[asyncio.Task[None]])
+    _left: list[Row] = field(default_factory=list[Row])
+    _removing: asyncio.Task[None] | None = None
 
     def now_us(self) -> int:
         """UTC microseconds."""
@@ -51,6 +57,28 @@ class Keeping:
         if self.records is not None:
             await self.records.change(new=tuple(new), now=tuple(now), gone=tuple(gone))
 
+    async def remove(self, rows: Iterable[Row]) -> None:
+        """What the database does not take now it is asked again until it does: a row that stayed would let somebody in
+        again after a restart. Raises JournalUnavailable when it is not done yet."""
+        self._left += rows
+        try:
+            await self._remove_left()
+        except JournalUnavailable:
+            if self._removing is None or self._removing.done():
+                self._removing = asyncio.create_task(self._remove_later())
+            raise
+
+    async def _remove_left(self) -> None:
+        gone = tuple(self._left)
+        await self.change(gone=gone)
+        self._left = [row for row in self._left if row not in gone]
+
+    async def _remove_later(self) -> None:
+        while self._left:
+            await asyncio.sleep(REMOVE_EVERY_S)
+            with suppress(JournalUnavailable):
+                await self._remove_left()
+
     def change_quietly(self, row: Row) -> None:
         """In the background; a database that is away is only logged."""
         task = asyncio.create_task(self._write_quietly(row))
@@ -60,6 +88,14 @@ class Keeping:
     async def close(self) -> None:
         """What waits is written."""
         await asyncio.gather(*self._writing, return_exceptions=True)
+        if self._removing is not None:
+            self._removing.cancel()
+            await asyncio.gather(self._removing, return_exceptions=True)
+        if self._left:
+            try:
+                await self._remove_left()
+            except JournalUnavailable as error:
+                log.error("%d sessions that were ended are still stored: %s", len(self._left), error)
         if self.records is not None:
             await self.records.close()
 

@@ -101,10 +101,10 @@ class Sessions:
         await self.end_these([entry for entry in self._of(person_id) if entry.row.session_id != but])
 
     async def end_these(self, entries: Sequence[Entry[Session]]) -> None:
-        """Raises JournalUnavailable; they have ended all the same."""
+        """Raises JournalUnavailable; they have ended all the same, and the database hears of it when it is back."""
         rows = [entry.row for entry in entries]
         self.forget(entries)
-        await self._keeping.change(gone=rows)
+        await self._keeping.remove(rows)
 
     def forget(self, entries: Iterable[Entry[Session]]) -> None:
         """They let nobody in any more; the database hears of it from whoever calls."""

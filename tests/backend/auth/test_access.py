@@ -9,6 +9,7 @@ import pytest
 from entrance import DAY_S, PASSWORD, Clocks, again, everything_in, opened, who, with_admin
 from refusals import refusing
 
+from backend.auth import keeping
 from backend.auth.access import Access, Visit
 from backend.auth.keeping import Denied
 from backend.auth.records import Records
@@ -306,3 +307,29 @@ async def test_a_database_that_is_away_lets_everybody_inside_go_on(
     with pytest.raises(JournalUnavailable):
         await access.sessions.end_all(access.people.by_name[0].person_id)
     assert who(access, secret) is None, "signed out all the same"
+
+
+@pytest.mark.parametrize("until_closed", [False, True])
+async def test_who_was_signed_out_while_the_database_was_away_stays_out_after_a_restart(
+    access: Access, url: str, clocks: Clocks, monkeypatch: pytest.MonkeyPatch, until_closed: bool
+) -> None:
+    monkeypatch.setattr(keeping, "REMOVE_EVERY_S", 3600.0 if until_closed else 0.01)
+    secret = await with_admin(access)
+    person_id = access.people.by_name[0].person_id
+
+    async def away(*_: object, **__: object) -> None:
+        raise JournalUnavailable(reasons.SignInNeeded())
+
+    with monkeypatch.context() as meanwhile:
+        meanwhile.setattr(Records, "change", away)
+        with pytest.raises(JournalUnavailable):
+            await access.sessions.end_all(person_id)
+        await asyncio.sleep(0.05)
+    if not until_closed:  # killed: nothing is written when it closes
+        await asyncio.sleep(0.3)
+        another = opened(url, clocks)
+        await another.load()
+    else:
+        another = await again(url, clocks, access)
+    assert who(another, secret) is None
+    await another.close()
