@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from backend.auth.keeping import Denied, Keeping
-from backend.auth.registry import Person, key_of
+from backend.auth.registry import Person, key_of, shown_key
 from backend.permissions import Role, at_least
 from backend.reasons.access import LastAdmin, NameTaken
 from backend.reasons.request import NothingThere
@@ -48,8 +48,8 @@ class People:
         return next((p for p in self._all.values() if (p.issuer, p.subject) == (issuer, subject)), None)
 
     def require_free(self, name: str) -> None:
-        """Raises Denied 409."""
-        if self.named(name) is not None:
+        """Raises Denied 409 where somebody's name looks the same."""
+        if any(shown_key(person.name) == shown_key(name) for person in self._all.values()):
             raise Denied(409, NameTaken(name))
 
     def operates(self, person_id: str) -> bool:

@@ -107,3 +107,8 @@ def digest(secret: str) -> str:
 def key_of(name: str) -> str:
     """Names that look alike are one: compatibility forms, case and blanks make no difference."""
     return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
+
+
+def shown_key(name: str) -> str:
+    """As key_of, without the letters that are not shown: a name that differs by those alone looks the same."""
+    return key_of("".join(letter for letter in name if unicodedata.category(letter) != "Cf"))

@@ -5,12 +5,15 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
+from backend.names import seen
 from backend.permissions import Role, Scope
 from backend.spec import Model
 
 Name = Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$")]
+NewName = Annotated[Name, AfterValidator(seen)]
+"""Of an account or a token: no list shows it as nothing, or as something else than it is."""
 Password = Annotated[str, Field(min_length=1, max_length=200)]
 Code = Annotated[str, Field(min_length=1, max_length=100)]
 
@@ -49,7 +52,7 @@ class FirstAdmin(Model):
     """code: as the server printed it when it started."""
 
     code: Code
-    name: Name
+    name: NewName
     password: Password
 
 
@@ -71,7 +74,7 @@ class InvitationAnswer(Model):
     """Makes the account."""
 
     code: Code
-    name: Name
+    name: NewName
     password: Password
 
 
@@ -166,7 +169,7 @@ class InvitationList(Model):
 class NewToken(Model):
     """days None: until it is revoked."""
 
-    name: Name
+    name: NewName
     scope: Scope
     days: Annotated[int, Field(ge=1, le=3650)] | None = None
 

@@ -353,3 +353,14 @@ async def test_a_resume_to_the_craft_itself_passes_by_no_lease(shared: FastAPI, 
         body["command"] = {"kind": "hold"}
         again = await client.post("/api/crafts/craft-1/commands", json=body)
         assert reason(again) == "command_id_reused"
+
+
+@pytest.mark.parametrize("name", ["\u200b", "\u202eadA", "x\ufffe", "\ufdd0"])
+async def test_a_name_that_lists_would_not_show_as_it_is_makes_no_account(
+    shared: FastAPI, access: Access, name: str
+) -> None:
+    code = access.begin_first_admin() or ""
+    async with visiting(shared) as client:
+        reply = await client.post("/api/first-admin", json={"code": code, "name": name, "password": PASSWORD})
+        assert reply.status_code == 422
+        assert not access.people.by_name

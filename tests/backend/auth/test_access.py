@@ -189,6 +189,15 @@ async def test_no_two_people_have_names_that_look_alike(access: Access, name: st
     assert key_of(name) == "ada"
 
 
+@pytest.mark.parametrize("name", ["Ada\u200b", "A\u00adda", "\ufeffAda", "A\u200dda"])
+async def test_letters_that_are_not_shown_make_no_other_name(access: Access, name: str) -> None:
+    """Else an operator could give orders, and report bearings, as what every list shows as somebody else."""
+    await with_admin(access)
+    link, _ = await access.invitations.make("operator", False, 3600, "x")
+    with refusing(reasons.NameTaken, Denied):
+        await access.accept_invitation(link, name, PASSWORD, Visit("a", ""))
+
+
 async def test_signing_out_everywhere_ends_all_at_once_and_for_good(access: Access, url: str, clocks: Clocks) -> None:
     first = await with_admin(access)
     second = await access.sign_in("Ada", PASSWORD, Visit("10.0.0.2", "phone"))
