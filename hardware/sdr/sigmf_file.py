@@ -15,6 +15,7 @@ from typing import Any, Final, TypeGuard
 
 import numpy as np
 import sigmf
+from jsonschema.exceptions import ValidationError
 from numpy.typing import NDArray
 
 from hardware.direction_finding.table_file import LARGEST, LONGEST_CELL, RecordingError
@@ -197,6 +198,8 @@ def _opened(path: Path) -> sigmf.SigMFFile:
         recording = sigmf.fromfile(str(path))
     except (OSError, ArithmeticError, ValueError, KeyError, TypeError, AttributeError, sigmf.error.SigMFError) as error:
         raise RecordingError(FileUnreadable(str(path), str(error))) from error
+    except ValidationError as error:  # with its schema it can leave no worker process
+        raise RecordingError(FileUnreadable(str(path), error.message[:LONGEST_CELL])) from None
     if not isinstance(recording, sigmf.SigMFFile):
         raise RecordingError(SamplesUnusable(str(path), "collection"))
     return recording

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import pickle
+import tarfile
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from time import process_time
@@ -236,3 +239,29 @@ def test_thousands_of_captures_are_read_in_no_time(tmp_path: Path) -> None:
     times = [block.at_s for block in recorded.blocks(1000)]
     assert times == pytest.approx(BEGAN_S + np.arange(6000))
     assert process_time() - began_s < 5.0
+
+
+def test_an_archive_whose_meta_file_breaks_the_standard_is_refused(tmp_path: Path) -> None:
+    """With a reason that a worker process can hand over: the validator's own error holds its schema."""
+    meta = write_sigmf(tmp_path / "one", ramp(1000), RATE_HZ, CENTRE_HZ, BEGAN_S)
+    changed(meta, [capture(-5)])
+    archive = tmp_path / "one.sigmf"
+    with tarfile.open(archive, "w") as tar:
+        for path in (meta, meta.with_suffix(".sigmf-data")):
+            tar.add(path, f"one/{path.name}")
+    with pytest.raises(RecordingError) as refused:
+        load_sigmf(archive)
+    assert isinstance(pickle.loads(pickle.dumps(refused.value)), RecordingError)
+
+
+def test_an_archive_reads_no_other_file_of_this_machine(tmp_path: Path) -> None:
+    meta = write_sigmf(tmp_path / "one", ramp(1000), RATE_HZ, CENTRE_HZ, BEGAN_S)
+    other = tmp_path / "other.bin"
+    other.write_bytes(ramp(777).tobytes())
+    changed(meta, dataset=str(other))
+    archive = tmp_path / "one.sigmf"
+    with tarfile.open(archive, "w") as tar:
+        tar.add(meta, f"one/{meta.name}")
+        tar.add(meta.with_suffix(".sigmf-data"), f"one/{meta.with_suffix('.sigmf-data').name}")
+    with suppress(RecordingError):
+        assert load_sigmf(archive).samples.size == 1000
