@@ -149,7 +149,11 @@ class Delivery:
                 await self._transactions.run(partial(_write, entries))
         except REFUSED:
             raise
-        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
+        except exc.DBAPIError as error:
+            if _unfit(error):
+                raise exc.DataError(error.statement, error.params, error.orig or error) from error
+            raise DatabaseAway(unanswered(error, self._engine)) from error
+        except (exc.TimeoutError, OSError) as error:
             raise DatabaseAway(unanswered(error, self._engine)) from error
         finally:
             self._took_s = time.monotonic() - began
@@ -296,6 +300,12 @@ class Delivery:
 def _write(entries: Sequence[Entry], connection: Connection) -> None:
     for entry in entries:
         entry.write(connection)
+
+
+def _unfit(error: exc.DBAPIError) -> bool:
+    """Did PostgreSQL answer that a value is none that it can hold (SQLSTATE class 22)? SQLAlchemy knows that of other
+    drivers than asyncpg."""
+    return str(getattr(error.orig, "sqlstate", None) or "").startswith("22")
 
 
 def _free_bytes(path: Path) -> int | None:

@@ -202,5 +202,17 @@ def _run_alembic(connection: Connection, revision: str) -> None:
     there = MigrationContext.configure(connection).get_current_revision()
     if there is not None and there not in known_revisions():
         raise LaterSchema(there)
+    if there is None:
+        _require_unicode(connection)
     config.attributes["connection"] = connection
     command.upgrade(config, revision)
+
+
+def _require_unicode(connection: Connection) -> None:
+    """A new database that lacks most letters is refused at once, not with the first name that has one. Raises
+    ValueError."""
+    if connection.dialect.name != "postgresql":
+        return
+    encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
+    if encoding != "UTF8":
+        raise ValueError(f"its encoding is {encoding}; make it with ENCODING 'UTF8' TEMPLATE template0")

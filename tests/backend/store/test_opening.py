@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
+from uuid import uuid4
+
 import pytest
 
 from backend.events import MissionDrafted
+from backend.ports import FactRefused
 from backend.settings import Settings
 from backend.spec import MissionSpec, Polygon
-from backend.store import opening
+from backend.store import engine, opening
 from backend.store.engine import migrate
 from backend.store.opening import DatabaseUnusable, open_journal
 from planner.reason import remedy_of
@@ -45,3 +49,29 @@ async def test_a_database_that_cannot_be_used_is_named_with_what_to_try(tmp_path
         async with open_journal(Settings(data_dir=tmp_path, database_url=url), lambda: 0.0):
             pass
     assert "CROSSFIX_DATABASE_URL" in remedy_of(refused.value.reason)
+
+
+@pytest.fixture
+def narrow_url(postgres_cluster):
+    """A database that has no letters but those of western Europe."""
+    name = f"narrow_{uuid4().hex[:12]}"
+    made = f"CREATE DATABASE {name} ENCODING 'LATIN1' TEMPLATE template0 LOCALE 'C'"
+    asyncio.run(postgres_cluster._ask(made))
+    return postgres_cluster.url(name)
+
+
+async def test_a_new_database_that_lacks_letters_is_refused(tmp_path, narrow_url):
+    with pytest.raises(DatabaseUnusable, match="LATIN1"):
+        async with open_journal(Settings(data_dir=tmp_path, database_url=narrow_url), lambda: 0.0):
+            pass
+
+
+async def test_a_fact_whose_letters_an_older_database_lacks_holds_up_nothing(tmp_path, narrow_url, monkeypatch):
+    monkeypatch.setattr(engine, "_require_unicode", lambda _: None)
+    async with open_journal(Settings(data_dir=tmp_path, database_url=narrow_url), lambda: 0.0) as journal:
+        await journal.append("m", [DRAFT])
+        with pytest.raises(FactRefused, match="LATIN1"):
+            await journal.append("m", [MissionDrafted(spec=SPEC.model_copy(update={"name": "\U0001f98a"}))])
+        assert (journal.report().state, journal.report().spooled) == ("ok", 0)
+        (after,) = await journal.append("m", [DRAFT])
+        assert after.seq == 2
