@@ -24,6 +24,7 @@ from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.ports import FactRefused, JournalUnavailable
 from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, NothingStores
+from backend.store.engine import dispose, make_writing_engine
 from backend.store.entries import Entry, EventsEntry, JournalConflict, decode
 from backend.store.patience import patience
 from backend.store.reading import Unanswered, unanswered, why
@@ -82,8 +83,9 @@ class Delivery:
         slow_s: float,
         disk_low_bytes: int,
     ) -> None:
-        self._engine = engine
-        self._transactions = transactions_of(engine, timeout_s)
+        self._own = make_writing_engine(engine, timeout_s)
+        self._engine = engine if self._own is None else self._own
+        self._transactions = transactions_of(self._engine, timeout_s)
         self._spool = spool
         self._settled = settled
         self._timeout_s = timeout_s
@@ -274,8 +276,10 @@ class Delivery:
         return True
 
     async def close(self) -> None:
-        """Its own connection to the database."""
+        """Its own connections to the database."""
         await self._transactions.close()
+        if self._own is not None:
+            await dispose(self._own)
 
     def waiting_events(self, mission_id: str) -> list[EventsEntry]:
         """Of a mission, in order."""

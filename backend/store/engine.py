@@ -15,7 +15,7 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, Dialect, Engine, create_engine, event, make_url
+from sqlalchemy import URL, Connection, Dialect, Engine, create_engine, event, make_url
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlalchemy.pool import NullPool
 
@@ -34,7 +34,7 @@ SHORTER = 0.6
 """Of the caller's time for an answer: how long SQLite waits for a locked file."""
 
 
-def make_engine(url: str, timeout_s: float) -> AsyncEngine:
+def make_engine(url: str | URL, timeout_s: float) -> AsyncEngine:
     """`url` with its async driver. On SQLite a locked file is waited for less long than `timeout_s`, so that SQLite
     answers before the caller gives up."""
     sqlite = make_url(url).get_backend_name() == "sqlite"
@@ -51,6 +51,12 @@ def make_engine(url: str, timeout_s: float) -> AsyncEngine:
         pool_timeout=timeout_s,
         connect_args={"timeout": timeout_s, "server_settings": {"application_name": "crossfix"}},
     )
+
+
+def make_writing_engine(engine: AsyncEngine, timeout_s: float) -> AsyncEngine | None:
+    """On the same PostgreSQL, with connections that no reader takes: a crowd of them would else keep facts from being
+    stored. None on SQLite, where a direct engine writes."""
+    return None if engine.dialect.name == "sqlite" else make_engine(engine.url, timeout_s)
 
 
 def make_direct_engine(engine: AsyncEngine, timeout_s: float) -> Engine:
@@ -104,7 +110,7 @@ def _join(threads: Iterable[Thread]) -> None:
         thread.join(max(0.0, until - time.monotonic()))
 
 
-def _make_folder(url: str) -> None:
+def _make_folder(url: str | URL) -> None:
     database = make_url(url).database
     if database and database != ":memory:":
         Path(database).parent.mkdir(parents=True, exist_ok=True)

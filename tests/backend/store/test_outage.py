@@ -275,3 +275,16 @@ async def test_what_was_acknowledged_survives_kill_9(bench, tmp_path):
         await bench.close()
         assert [record.seq for record in stored] == list(range(1, len(stored) + 1))
         assert acknowledged <= len(stored) <= acknowledged + 1
+
+
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+async def test_a_crowd_of_readers_keeps_no_fact_from_being_stored(bench):
+    journal = await bench.open()
+    await journal.append("m", [DRAFT])
+    readers = [await journal._engine.connect() for _ in range(15)]  # all that a pool of its size gives
+    try:
+        await journal.append("m", [DRAFT])
+        assert (journal.report().state, journal.report().spooled) == ("ok", 0)
+    finally:
+        for reader in readers:
+            await reader.close()
