@@ -43,7 +43,7 @@ SWUNG_LOOKS = 2
 """What a place tells where the nose swings on the way to it, in turns: the leg says as much as one of a carrier
 (decision 61). Of pulses a leg hears as few as its time holds, where a turn waits for enough of them."""
 ECHOES_AHEAD = 1.22
-"""Until a bearing has come, simulated ones meet no outlier and leave none to be doubted, so that craft that listen at
+"""Until a craft has a bearing, simulated ones meet no outlier and leave none to be doubted, so that craft that listen at
 places only took 1.35 times what was said (100 of the field world), those that never stop 1.2 times. Where the nose
 swings on the way to turns, what the legs to come tell makes up for it, and neither is reckoned: missions took 0.97
 times what was said. Of carriers: searches for tags were not flown among echoes."""
@@ -178,7 +178,8 @@ def foreseen_for(task: Localization, measured: Sequence[BearingMeasured], belief
     sensor, carrier = task.mission.sensor, task.mission.emitter(task.emitter_id).kind == "carrier"
     looks = SWUNG_LOOKS if carrier and sensor.listen_on_the_way and sensor.swing_on_the_way else 1
     found = foreseen_to_plan(task.problem, measured, belief, looks)
-    if not measured and carrier and (looks == 1 or sensor.never_stop) and isinstance(belief, JointBelief):
+    unflown = not any(isinstance(fact.source, CraftSource) for fact in measured)
+    if unflown and carrier and (looks == 1 or sensor.never_stop) and isinstance(belief, JointBelief):
         found = replace(found, sigma=ECHOES_AHEAD * found.sigma)
     return replace(found, measurement_time=task.problem.measurement_time) if task.fewer_turned_for else found
 

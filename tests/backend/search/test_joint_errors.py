@@ -201,6 +201,9 @@ def test_a_place_told_by_its_way_too_is_worth_two_turns_that_share_the_compass()
     )
     for not_both in (JOINT, never_stopping):
         assert foreseen_for(not_both, (), JOINT.prior).sigma == ECHOES_AHEAD * first
+    told = seen[0].model_copy(update={"source": PersonSource(name="Ada")})
+    reported = JOINT.planning_belief(JOINT.planner_bearings([told]))
+    assert foreseen_for(JOINT, [told], reported).sigma == ECHOES_AHEAD * foreseen(JOINT.problem, [told], reported).sigma
     for measured in (seen[:1], seen):
         belief = JOINT.planning_belief(JOINT.planner_bearings(measured))
         turn, place = (foreseen_for(one, measured, belief).sigma for one in (JOINT, swinging))
