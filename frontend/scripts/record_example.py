@@ -53,7 +53,7 @@ DECIMALS_OF = {
 }  # fmt: skip
 """Of degrees: 0.1 m."""
 PROGRESS_POINTS = 24
-STATUS_S = 4.0
+STATUS_S = 6.0
 CELLS = 6400
 DRAWN = 1e-3
 """Of the peak: what is less the map does not show."""
