@@ -1,5 +1,5 @@
 // What else may be otherwise in a what-if: bearings left out, model of errors, estimate, rollouts; and keeping it by name.
-import { signal } from "@preact/signals";
+import { type Signal, signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { type MessageKey, t } from "../i18n";
@@ -12,25 +12,29 @@ import { ProblemBox } from "./ProblemNote";
 
 type Estimator = NonNullable<Supposition["estimator"]>;
 type Errors = NonNullable<Supposition["bearing_errors"]>;
+type Evidence = NonNullable<Supposition["sweep_evidence"]>;
 
 const without = signal<readonly string[]>([]);
 const estimator = signal<Estimator | "">("");
 const errors = signal<Errors | "">("");
+const evidence = signal<Evidence | "">("");
 const budget = signal("");
 
 const ESTIMATORS = ["map", "expected_value", "geometric_median"] as const satisfies Estimator[];
 const ERRORS = ["independent", "joint"] as const satisfies Errors[];
+const EVIDENCE = ["peak", "whole"] as const satisfies Evidence[];
 
 export const isBudgetUnread = (): boolean => !/^\s*\d*\s*$/.test(budget.value);
 
 /** The fields below, in the words of the question; a bearing of another moment or mission is not named. */
-export function furtherWishes(): Pick<Supposition, "without" | "estimator" | "bearing_errors" | "budget"> {
+export function furtherWishes(): Pick<Supposition, "without" | "estimator" | "bearing_errors" | "sweep_evidence" | "budget"> {
   const known = new Set(flownBearings.value.map((b) => b.bearing_id));
   const rollouts = Number.parseInt(budget.value, 10);
   return {
     without: without.value.filter((id) => known.has(id)),
     estimator: estimator.value || null,
     bearing_errors: errors.value || null,
+    sweep_evidence: evidence.value || null,
     budget: Number.isNaN(rollouts) ? null : rollouts,
   };
 }
@@ -54,46 +58,69 @@ function LeaveOut() {
   );
 }
 
+interface Choosing<Value extends string> {
+  part: string;
+  label: MessageKey;
+  chosen: Signal<Value | "">;
+  options: readonly Value[];
+  words: (option: Value) => MessageKey;
+}
+
+/** As it was flown, or one of these. */
+export function Choice<Value extends string>({ part, label, chosen, options, words }: Choosing<Value>) {
+  return (
+    <label>
+      {t(label)}
+      <select data-testid={`what-if-${part}`} value={chosen.value} onChange={(e) => (chosen.value = e.currentTarget.value as Value | "")}>
+        <option value="">{t("whatIf.planner.flown")}</option>
+        {options.map((option) => (
+          <option value={option} key={option}>
+            {t(words(option))}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+interface Typing {
+  part: string;
+  label: MessageKey;
+  flown: string | number | undefined;
+  typed: Signal<string>;
+  unread?: boolean;
+}
+
+/** A number; empty: as it was flown. */
+export function Typed({ part, label, flown, typed, unread }: Typing) {
+  return (
+    <label>
+      {t(label)}
+      <input
+        data-testid={`what-if-${part}`}
+        inputMode="decimal"
+        placeholder={`${flown ?? ""}`}
+        value={typed.value}
+        aria-invalid={unread}
+        onInput={(e) => (typed.value = e.currentTarget.value)}
+      />
+    </label>
+  );
+}
+
 export function FurtherWishes() {
   return (
     <>
-      <label>
-        {t("whatIf.errors")}
-        <select data-testid="what-if-errors" value={errors.value} onChange={(e) => (errors.value = e.currentTarget.value as Errors | "")}>
-          <option value="">{t("whatIf.planner.flown")}</option>
-          {ERRORS.map((name) => (
-            <option value={name} key={name}>
-              {t(`edit.bearingErrors.${name}` satisfies MessageKey)}
-            </option>
-          ))}
-        </select>
-      </label>
-      <label>
-        {t("edit.estimator")}
-        <select
-          data-testid="what-if-estimator"
-          value={estimator.value}
-          onChange={(e) => (estimator.value = e.currentTarget.value as Estimator | "")}
-        >
-          <option value="">{t("whatIf.planner.flown")}</option>
-          {ESTIMATORS.map((name) => (
-            <option value={name} key={name}>
-              {t(`edit.estimator.${name}` satisfies MessageKey)}
-            </option>
-          ))}
-        </select>
-      </label>
-      <label>
-        {t("edit.budget")}
-        <input
-          data-testid="what-if-budget"
-          inputMode="numeric"
-          placeholder={String(mission.value.spec?.planner.budget ?? "")}
-          value={budget.value}
-          aria-invalid={isBudgetUnread()}
-          onInput={(e) => (budget.value = e.currentTarget.value)}
-        />
-      </label>
+      <Choice part="errors" label="whatIf.errors" chosen={errors} options={ERRORS} words={(one) => `edit.bearingErrors.${one}`} />
+      <Choice
+        part="evidence"
+        label="edit.sweepEvidence"
+        chosen={evidence}
+        options={EVIDENCE}
+        words={(one) => `edit.sweepEvidence.${one}`}
+      />
+      <Choice part="estimator" label="edit.estimator" chosen={estimator} options={ESTIMATORS} words={(one) => `edit.estimator.${one}`} />
+      <Typed part="budget" label="edit.budget" flown={mission.value.spec?.planner.budget} typed={budget} unread={isBudgetUnread()} />
       <LeaveOut />
     </>
   );

@@ -15,10 +15,11 @@ afterEach(() => {
   vi.unstubAllGlobals();
 });
 
-it("asks about the emitter shown", async () => {
+it("asks about the emitter shown, and what is chosen otherwise than it was flown", async () => {
   const asked: unknown[] = [];
   vi.stubGlobal("fetch", (_path: string, { body }: RequestInit) => {
-    asked.push((JSON.parse(String(body)) as { emitter_id: unknown }).emitter_id);
+    const { emitter_id, sweep_evidence, estimator, method } = JSON.parse(String(body)) as Record<string, unknown>;
+    asked.push({ emitter_id, sweep_evidence, estimator, method });
     return Promise.reject(new TypeError("no link"));
   });
   open(new FakeSource("m"));
@@ -28,6 +29,17 @@ it("asks about the emitter shown", async () => {
   live.value = { ...live.value, mission: missionAt(all, Number.POSITIVE_INFINITY), events: all };
   selectedEmitter.value = "b";
   act(() => render(<WhatIfPanel />, document.body));
-  act(() => document.querySelector<HTMLButtonElement>("[data-testid=what-if-ask]")!.click());
-  await vi.waitFor(() => expect(asked).toEqual(["b"]));
+  const part = <T extends HTMLElement>(name: string) => document.querySelector<T>(`[data-testid=what-if-${name}]`)!;
+  const ask = async (expected: unknown) => {
+    act(() => part<HTMLButtonElement>("ask").click());
+    await vi.waitFor(() => expect(asked.at(-1)).toEqual(expected));
+  };
+  await ask({ emitter_id: "b", sweep_evidence: null, estimator: null });
+  const choose = (name: string, value: string) => {
+    part<HTMLSelectElement>(name).value = value;
+    part(name).dispatchEvent(new Event("change", { bubbles: true }));
+  };
+  act(() => choose("evidence", "peak"));
+  act(() => choose("planner", "halving"));
+  await ask({ emitter_id: "b", sweep_evidence: "peak", estimator: null, method: "rollout" });
 });

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
-import { type MessageKey, reasonText, t } from "../i18n";
+import { reasonText, t } from "../i18n";
 import * as api from "../sources/api";
 import type { Supposition } from "../sources/coursesApi";
 import { momentSeq } from "../state/moment";
@@ -14,10 +14,9 @@ import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } f
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
 import { SavePattern } from "./AntennaDoubt";
 import { ProblemBox } from "./ProblemNote";
-import { FurtherWishes, furtherWishes, isBudgetUnread, KeepVariant } from "./WhatIfMore";
+import { Choice, FurtherWishes, furtherWishes, isBudgetUnread, KeepVariant, Typed } from "./WhatIfMore";
 
 const PLANNERS = {
-  flown: {},
   halving: { method: "rollout", selection: "sequential_halving" },
   uniform: { method: "rollout", selection: "uniform" },
   ellipse: { method: "base_policy", base_policy: "ellipse" },
@@ -30,7 +29,7 @@ const sigma = signal("");
 const outliers = signal("");
 const mounting = signal("");
 const pattern = signal<File | null>(null);
-const planner = signal<PlannerName>("flown");
+const planner = signal<PlannerName | "">("");
 
 /** A typed number, null for an empty field; NaN for what is none. */
 const typed = (text: string): number | null => (text.trim() === "" ? null : Number(text.replace(",", ".")));
@@ -123,16 +122,7 @@ function Review({ missionId, emitterId }: { missionId: string; emitterId: string
 function Antenna() {
   return (
     <>
-      <label>
-        {t("whatIf.mounting")}
-        <input
-          data-testid="what-if-mounting"
-          inputMode="decimal"
-          placeholder={t("whatIf.asItIs")}
-          value={mounting.value}
-          onInput={(e) => (mounting.value = e.currentTarget.value)}
-        />
-      </label>
+      <Typed part="mounting" label="whatIf.mounting" flown={t("whatIf.asItIs")} typed={mounting} />
       <div class="what-if-pattern">
         <label class="button">
           {pattern.value?.name ?? t("whatIf.pattern")}
@@ -165,7 +155,7 @@ async function supposition(): Promise<Supposition> {
     outlier_probability: share === null ? null : share / 100,
     offset_to_nose_deg: typed(mounting.value),
     pattern: pattern.value && { filename: pattern.value.name, text: await pattern.value.text() },
-    ...PLANNERS[planner.value],
+    ...(planner.value && PLANNERS[planner.value]),
     ...furtherWishes(),
   };
 }
@@ -208,42 +198,17 @@ export function WhatIfPanel() {
       )}
       {shown?.answer.no_plan && <p class="muted">{t("whatIf.noPlan", { reason: reasonText(shown.answer.no_plan) })}</p>}
       <div class="what-if-fields">
-        <label>
-          {t("whatIf.sigma")}
-          <input
-            data-testid="what-if-sigma"
-            inputMode="decimal"
-            placeholder={String(spec.sensor.sigma_deg)}
-            value={sigma.value}
-            onInput={(e) => (sigma.value = e.currentTarget.value)}
-          />
-        </label>
-        <label>
-          {t("whatIf.outliers")}
-          <input
-            data-testid="what-if-outliers"
-            inputMode="decimal"
-            placeholder={String(100 * spec.sensor.outlier_probability)}
-            value={outliers.value}
-            onInput={(e) => (outliers.value = e.currentTarget.value)}
-          />
-        </label>
+        <Typed part="sigma" label="whatIf.sigma" flown={spec.sensor.sigma_deg} typed={sigma} />
+        <Typed part="outliers" label="whatIf.outliers" flown={100 * spec.sensor.outlier_probability} typed={outliers} />
         <Antenna />
         {emitterId && <Review missionId={missionId} emitterId={emitterId} key={missionId + emitterId} />}
-        <label>
-          {t("whatIf.planner")}
-          <select
-            data-testid="what-if-planner"
-            value={planner.value}
-            onChange={(e) => (planner.value = e.currentTarget.value as PlannerName)}
-          >
-            {(Object.keys(PLANNERS) as PlannerName[]).map((name) => (
-              <option value={name} key={name}>
-                {t(`whatIf.planner.${name}` satisfies MessageKey)}
-              </option>
-            ))}
-          </select>
-        </label>
+        <Choice
+          part="planner"
+          label="whatIf.planner"
+          chosen={planner}
+          options={Object.keys(PLANNERS) as PlannerName[]}
+          words={(one) => `whatIf.planner.${one}`}
+        />
         <FurtherWishes />
       </div>
       <div class="decision">
