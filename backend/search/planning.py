@@ -43,8 +43,8 @@ SWUNG_LOOKS = 2
 """What a place tells where the nose swings on the way to it, in turns: the leg says as much as one of a carrier
 (decision 61). Of pulses a leg hears as few as its time holds, where a turn waits for enough of them."""
 ECHOES_AHEAD = 1.22
-"""Until a craft has a bearing, simulated ones meet no outlier and leave none to be doubted, so that craft that listen at
-places only took 1.35 times what was said (100 of the field world), those that never stop 1.2 times. Where the nose
+"""Until a craft has a bearing, simulated ones meet no outlier and leave none to be doubted, so that those that listen
+at places only took 1.35 times what was said (100 of the field world), those that never stop 1.2 times. Where the nose
 swings on the way to turns, what the legs to come tell makes up for it, and neither is reckoned: missions took 0.97
 times what was said. Of carriers: searches for tags were not flown among echoes."""
 
