@@ -74,7 +74,7 @@ from backend.craft.step import (
     tell_said,
     try_rung,
 )
-from backend.craft.who_flies import authority_heard, restarted
+from backend.craft.who_flies import authority_heard, restarted, tell_failsafe
 from backend.events import (
     BearingMeasured,
     HoldOrdered,
@@ -330,7 +330,7 @@ def _heard_again(step: CraftStep) -> None:
         clear_alerts(step, "failure")
         bring_down(step, "land" if craft.phase == "landing" else "return")
     elif craft.phase == "hold" and step.comes_by_itself:
-        alert(step, "vehicle", "caution", flight.FailsafeFlies("link_lost"))
+        tell_failsafe(step, "link_lost")
     elif craft.phase == "hold":
         insist(step, "hold")
 

@@ -41,12 +41,14 @@ def authority_heard(step: CraftStep, heard: Authority) -> None:
         step.go("manual", reason)
     elif heard.who == "pilot" and before.perhaps_failsafe and not heard.perhaps_failsafe:
         alert(step, "pilot", "caution", flight.PilotFlies(heard.mode or ""))
-    elif failsafe_has(heard) and (not failsafe_has(before) or _named(heard) != _named(before)):
-        _by_failsafe(step, heard)
+    elif failsafe_has(heard):
+        again = before.who == heard.who == "failsafe" and before.given_back and not heard.given_back
+        if again or not failsafe_has(before) or _named(heard) != _named(before):
+            _by_failsafe(step, heard, again)
 
 
-def _by_failsafe(step: CraftStep, heard: Authority) -> None:
-    """Also of what counted as a pilot's for a moment, until the autopilot named its cause."""
+def _by_failsafe(step: CraftStep, heard: Authority, again: bool) -> None:
+    """Also of what counted as a pilot's for a moment, until the autopilot named its cause. again: it had stopped."""
     silent = "link_lost" if "vehicle" in step.craft.links_down else "silence"
     reason = flight.FailsafeFlies(_named(heard) or silent)
     if step.craft.phase in AUTOMATIC | {"hold"} or (step.craft.phase == "manual" and heard.who == "failsafe"):
@@ -60,7 +62,7 @@ def _by_failsafe(step: CraftStep, heard: Authority) -> None:
             step.go(homeward, step.craft.return_reason or reason)
         else:
             _failsafe_flies(step, reason)
-    elif heard.who == "failsafe" and _named(heard) is not None:
+    elif heard.who == "failsafe" and (again or _named(heard) is not None):
         alert(step, "vehicle", "caution", reason)
 
 
@@ -81,6 +83,14 @@ def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
     step.go("hold", reason)
 
 
+def tell_failsafe(step: CraftStep, silent: Literal["link_lost", "ordered_before", "server_away"]) -> None:
+    """What it does now, after a while in which that was not heard. silent: why it flies, where it names no cause."""
+    heard = step.craft.authority
+    stopped = heard.who == "failsafe" and heard.given_back
+    flies = flight.FailsafeFlies(_named(heard) or silent)
+    alert(step, "vehicle", "caution", flight.FailsafeStopped(heard.mode or "") if stopped else flies)
+
+
 def restarted(step: CraftStep, given: Restarted) -> None:
     """Rule 4: back in hold with the same belief; a vehicle that a pilot flies is not touched."""
     craft, heard = step.craft, given.authority
@@ -99,7 +109,9 @@ def restarted(step: CraftStep, given: Restarted) -> None:
         step.go("manual", reason)
     elif failsafe_has(heard):
         because = "ordered_before" if craft.comes_down_as_ordered else "server_away"
-        _failsafe_flies(step, flight.FailsafeFlies(_named(heard) or because))
+        if heard.who == "failsafe" or not step.on_ground:
+            tell_failsafe(step, because)
+        step.go("hold", flight.FailsafeFlies(_named(heard) or because))
     else:
         insist(step, "hold")
         step.go("hold", flight.BackAfterRestart())

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from craft_walk import VEHICLE, CraftWalk, craft_in, moves, refusal, sent
 from facts import (
     FAILSAFE,
     GIVEN_BACK,
     LANDED_BY_FAILSAFE,
+    LINK_LOST,
+    NAMED_FAILSAFE,
     OURS,
     PILOT,
 )
@@ -16,7 +20,7 @@ from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.events import AlertRaised, Phase, ServerRestarted
-from backend.reasons.flight import FailsafeFlies, Landed, PilotFlies
+from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, PilotFlies
 
 IN_FLIGHT: tuple[Phase, ...] = tuple(AUTOMATIC | HOMEWARD)
 
@@ -123,3 +127,39 @@ def test_after_an_abort_and_a_restart_hold_and_return_still_work_until_the_vehic
     walk.give(inputs.Landed())
     assert not walk.craft.engaged
     assert refusal(walk.order(commands.Hold())) is not None
+
+
+STOPPED = replace(NAMED_FAILSAFE, mode="HOLD", given_back=True, heard=1, kind="waiting")
+
+
+def test_a_failsafe_that_had_stopped_and_flies_again_is_told_anew() -> None:
+    walk = CraftWalk().to("flying")
+    walk.give(inputs.AuthorityHeard(NAMED_FAILSAFE))
+    walk.give(inputs.AuthorityHeard(STOPPED))
+    walk.give(inputs.FailsafeEnded("HOLD"))
+    assert walk.last_alert.reason == FailsafeStopped("HOLD")
+    assert not sent(walk.give(inputs.AuthorityHeard(NAMED_FAILSAFE)))
+    assert (walk.topics, walk.last_alert.reason) == (["vehicle"], FailsafeFlies("battery"))
+
+
+def test_after_a_restart_or_a_lost_link_it_says_what_the_failsafe_does_then_and_why() -> None:
+    for heard, reason in ((NAMED_FAILSAFE, FailsafeFlies("battery")), (STOPPED, FailsafeStopped("HOLD"))):
+        walk = CraftWalk().to("flying")
+        walk.give(inputs.AuthorityHeard(NAMED_FAILSAFE))
+        walk.give(inputs.LinkDown("vehicle", LINK_LOST))
+        walk.give(inputs.AuthorityHeard(heard))
+        walk.give(inputs.LinkUp("vehicle", 5.0))
+        assert (walk.topics, walk.last_alert.reason) == (["vehicle"], reason)
+        walk.give(inputs.Restarted(heard))
+        assert (walk.topics, walk.last_alert.reason) == (["vehicle"], reason)
+
+
+def test_after_a_restart_a_vehicle_that_its_failsafe_had_landed_before_is_said_to_stand() -> None:
+    walk = CraftWalk().to("flying")
+    walk.give(inputs.AuthorityHeard(FAILSAFE))
+    walk.give(inputs.AuthorityHeard(LANDED_BY_FAILSAFE))
+    walk.give(inputs.Landed())
+    assert walk.topics == ["ground"]
+    walk.give(inputs.Restarted(LANDED_BY_FAILSAFE, on_ground=True))
+    walk.give(inputs.Landed())
+    assert walk.topics == ["ground"]
