@@ -70,10 +70,11 @@ class CraftState:
     count. avoid: places vetoed or without a usable sweep since the last bearing, or since the search area changed.
     refused: places that the autopilot would not fly to, since the search area changed; refused_in_a_row: how many of
     the last ones were refused. return_reason: why it is on its way home. taken_from: the phase in which a
-    pilot, or who seemed one, took it, while it is flown by hand. ladder: of the hold, return or landing that
-    was ordered last; None once something else has come of it. counting_down: it returns soon because its battery runs
-    low; countdown_stopped: somebody has stopped that, which they may once a flight. antenna: that it has flown with;
-    None: nobody kept it. nets_wait: the autopilot's own fence is not known to be that of the search area.
+    pilot, or who seemed one, took it, while it is flown by hand; taken_reason: why it was in that phase. ladder: of
+    the hold, return or landing that was ordered last; None once something else has come of it. counting_down: it
+    returns soon because its battery runs low; countdown_stopped: somebody has stopped that, which they may once a
+    flight. antenna: that it has flown with; None: nobody kept it. nets_wait: the autopilot's own fence is not known to
+    be that of the search area.
     """
 
     craft_id: str
@@ -97,6 +98,7 @@ class CraftState:
     refused_in_a_row: int = 0
     return_reason: Reason | None = None
     taken_from: Phase | None = None
+    taken_reason: Reason | None = None
     ladder: Ladder | None = None
     counting_down: bool = False
     countdown_stopped: bool = False
@@ -171,6 +173,7 @@ def evolve(state: CraftState, event: Event) -> CraftState:
                 reached=state.reached and after in ("planning", "measuring"),
                 return_reason=back,
                 taken_from=before if after == "manual" else None,
+                taken_reason=state.phase_reason if after == "manual" else None,
                 ladder=state.ladder if ordered else None,
                 engaged=state.engaged and up,
                 searching=state.searching and up,

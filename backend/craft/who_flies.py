@@ -6,7 +6,7 @@ from typing import Literal
 
 from backend.craft.effects import CancelTimer, CancelWork
 from backend.craft.inputs import Restarted
-from backend.craft.state import AUTOMATIC, HOMEWARD, failsafe_has, ours_to_order, pilot_has
+from backend.craft.state import AUTOMATIC, HOMEWARD, ORDERED_BEFORE, failsafe_has, ours_to_order, pilot_has
 from backend.craft.step import (
     CraftStep,
     alert,
@@ -56,12 +56,11 @@ def _by_failsafe(step: CraftStep, heard: Authority, again: bool) -> None:
         clear_alerts(step, "pilot")
         if step.craft.phase == "manual" and "console" in step.craft.links_down:
             start_console_timers(step)  # the pilot that it was taken for had ended them
-        homeward = step.craft.taken_from
-        if homeward in HOMEWARD:
-            alert(step, "vehicle", "caution", reason)
-            step.go(homeward, step.craft.return_reason or reason)
-        else:
-            _failsafe_flies(step, reason)
+        before, why = step.craft.taken_from or "hold", step.craft.taken_reason
+        if why is None or not (before in HOMEWARD or why == ORDERED_BEFORE):
+            before, why = "hold", reason
+        alert(step, "vehicle", "caution", reason)
+        step.go(before, why)
     elif heard.who == "failsafe" and (again or _named(heard) is not None):
         alert(step, "vehicle", "caution", reason)
 
@@ -76,11 +75,6 @@ def kept_of(authority: Authority) -> tuple[object, ...]:
     a = authority
     cause = a.cause if a.who == "failsafe" else None
     return a.who, a.taken_by, a.given_back, a.perhaps_failsafe, a.undone, a.mode, cause
-
-
-def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
-    alert(step, "vehicle", "caution", reason)
-    step.go("hold", reason)
 
 
 def tell_failsafe(step: CraftStep, silent: Literal["link_lost", "ordered_before", "server_away"]) -> None:

@@ -13,6 +13,7 @@ from facts import (
     LINK_LOST,
     NAMED_FAILSAFE,
     OURS,
+    PERHAPS_PILOT,
     PILOT,
 )
 
@@ -20,7 +21,8 @@ from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.events import AlertRaised, Phase, ServerRestarted
-from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, PilotFlies
+from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, Ordered, PilotFlies
+from hardware.authority import Authority
 
 IN_FLIGHT: tuple[Phase, ...] = tuple(AUTOMATIC | HOMEWARD)
 
@@ -163,3 +165,26 @@ def test_after_a_restart_a_vehicle_that_its_failsafe_had_landed_before_is_said_t
     walk.give(inputs.Restarted(LANDED_BY_FAILSAFE, on_ground=True))
     walk.give(inputs.Landed())
     assert walk.topics == ["ground"]
+
+
+@pytest.mark.parametrize("heard", [(NAMED_FAILSAFE,), (PERHAPS_PILOT, NAMED_FAILSAFE)])
+@pytest.mark.parametrize("phase", HOMEWARD)
+def test_a_way_home_from_before_a_restart_ends_as_ordered_whichever_word_of_a_failsafe_is_first(
+    phase: Phase, heard: tuple[Authority, ...]
+) -> None:
+    walk = craft_in(phase)
+    walk.give(inputs.Restarted(FAILSAFE))
+    for authority in heard:
+        walk.give(inputs.AuthorityHeard(authority))
+    assert (walk.topics, walk.last_alert.reason) == (["vehicle"], FailsafeFlies("battery"))
+    walk.give(inputs.Landed())
+    assert (walk.craft.phase, walk.craft.engaged, walk.search.stage) == ("ground", False, "ended")
+
+
+def test_a_landing_that_a_failsafe_takes_over_keeps_its_own_reason() -> None:
+    walk = CraftWalk().to("returning")
+    walk.order(commands.Hold())
+    walk.order(commands.Land())
+    for authority in (PERHAPS_PILOT, NAMED_FAILSAFE):
+        walk.give(inputs.AuthorityHeard(authority))
+    assert (walk.craft.phase, walk.craft.phase_reason) == ("landing", Ordered("land", "anna"))
