@@ -192,9 +192,10 @@ describe.each(["en", "de"] as const)("a failsafe in hold, in words: %s", (langua
     expect(doing(started(), phase("hold", flies), ...began, down)).toBe(t("state.ground"));
   });
 
-  it("that flies a vehicle which stood on the ground before", () => {
+  it("that flies a vehicle which stood on the ground before, or has landed it and keeps its motors armed", () => {
     const stood: MissionEvent = { ...(alert("g", { code: "landed", during: "hold" }) as EventOf<"alert_raised">), topic: "ground" };
     expect(doing(started(), phase("hold", ordered), stood, ...began)).toBe(reasonText(flies));
+    for (const reason of [ordered, flies]) expect(doing(started(), phase("hold", reason), ...began, over, stood)).toBe(t("state.ground"));
   });
 });
 

@@ -44,8 +44,8 @@ function holdWords({ phaseReason, lost, alerts, craftId, authority }: MissionVie
   const open = alerts.filter((alert) => alert.craftId === craftId && !alert.cleared);
   const [flies, stopped] = [who === "failsafe" && !given_back, who === "failsafe" && given_back];
   const told = open.find(({ topic }) => topic === "vehicle")?.reason;
-  if (failsafe_landed || (!flies && open.some(({ topic }) => topic === "ground"))) return t("state.ground");
   if (flies && told?.code === "failsafe_flies") return reasonText(told);
+  if (failsafe_landed || open.some(({ topic }) => topic === "ground")) return t("state.ground");
   if (phaseReason?.code === "failsafe_flies" && !stopped) return reason;
   if (flies) return whoFlies(who, mode ?? "", false);
   if (stopped && told) return t("state.hold", { reason: reasonText(told) });
