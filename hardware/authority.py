@@ -339,7 +339,8 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
     if before.who == "failsafe":
         if not seen.in_air or (waiting and seen.mode == before.heard and not seen.after_silence):
             return now
-        if homeward and before.cause is not None and not seen.after_silence and _selected_by_hand(before, seen):
+        told = before.cause is not None or before.given_back  # else it may be our own return, of before a restart
+        if homeward and told and not seen.after_silence and _selected_by_hand(before, seen):
             return _taken(now, "pilot", "mode", seen.at_s, seen)
         waits_again = before.cause == "position" and seen.waits_again
         if homeward or (waiting and (seen.after_silence or waits_again)):

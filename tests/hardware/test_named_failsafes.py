@@ -271,3 +271,23 @@ def test_a_return_of_our_own_that_a_restarted_server_knows_nothing_of_stays_no_p
     craft.sees(ServerRestarted())
     assert craft.hears(RETURN, after_silence=True).who == "failsafe"
     assert says(craft, acts=False, later_s=60.0).who == "failsafe"
+
+
+@pytest.mark.parametrize("acts", [False, None])
+def test_who_leaves_the_waiting_after_a_failsafe_that_named_nothing_is_a_pilot(acts: bool | None) -> None:
+    """The link was silent for a moment when it was stopped, so that nobody knows by whom."""
+    craft = flying(HOLD)
+    craft.hears(RETURN, after_silence=True)
+    assert craft.hears(HOLD, after_silence=True).given_back
+    craft.waits(60.0)
+    craft.hears(RETURN)
+    told = craft.sees(ModeHeard(RETURN, "return", "RETURN", True, True, False, craft.at_s + 1.0, acts))
+    assert (told.who, told.perhaps_failsafe) == ("pilot", acts is None)
+    again = flying(HOLD)
+    again.hears(RETURN, after_silence=True)
+    again.hears(HOLD, after_silence=True)
+    assert again.hears(RETURN, after_silence=True).who == "failsafe"
+    again.hears(HOLD, after_silence=True)
+    again.waits(60.0)
+    named(again, "battery")
+    assert again.hears(RETURN).who == "failsafe"
