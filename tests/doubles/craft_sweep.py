@@ -20,7 +20,7 @@ from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.effects import CraftEffect
 from backend.craft.machine import transition
-from backend.craft.state import CraftState
+from backend.craft.state import HOMEWARD, CraftState
 from backend.craft.who_flies import kept_of
 from backend.search.effects import Record
 from backend.search.inputs import SearchOver
@@ -85,6 +85,7 @@ def _key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
         craft.countdown_stopped,
         craft.chosen is None,
         craft.reached,
+        craft.taken_from in HOMEWARD,
         "vehicle" in craft.links_down,
         ladder and (ladder.way, ladder.stage),
     )
