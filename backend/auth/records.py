@@ -7,14 +7,16 @@ from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
 
 from sqlalchemy import ColumnElement, Table, delete, insert, select, update
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.auth.registry import Invitation, MachineToken, Person, Session
+from backend.ports import FactRefused
+from backend.reasons.storage import FactUnfit
 from backend.store import tables
 from backend.store.engine import dispose
 from backend.store.patience import patience
-from backend.store.reading import unavailable
+from backend.store.reading import refuses, unavailable, why
 
 Row = Person | Session | Invitation | MachineToken
 TABLES: dict[type[Any], tuple[Table, str]] = {
@@ -36,8 +38,13 @@ class Stored:
     tokens: Sequence[MachineToken]
 
 
+class RowThere(FactRefused):
+    """The database holds a row already that excludes this one."""
+
+
 class Records:
-    """Each call is one transaction. All raise JournalUnavailable when the database does not answer."""
+    """Each call is one transaction. All raise JournalUnavailable when the database does not answer: then nothing is
+    known about what they should change. FactRefused: the database can never hold it."""
 
     def __init__(self, engine: AsyncEngine, timeout_s: float) -> None:
         self._engine = engine.execution_options(write=True)
@@ -57,7 +64,9 @@ class Records:
         return await self._done(read)
 
     async def change(self, *, new: Sequence[Row] = (), now: Sequence[Row] = (), gone: Sequence[Row] = ()) -> None:
-        """new: rows to insert. now: rows that are there, as they are now. gone: rows to remove. All or nothing."""
+        """new: rows to insert. now: rows that are there, as they are now. gone: rows to remove. All or nothing.
+
+        Raises RowThere."""
 
         async def write(connection: AsyncConnection) -> None:
             for row in new:
@@ -80,6 +89,9 @@ class Records:
             async with patience(self._timeout_s), self._engine.begin() as connection:
                 return await work(connection)
         except (DBAPIError, OSError, TimeoutError) as error:
+            if refuses(error):
+                kind = RowThere if isinstance(error, IntegrityError) else FactRefused
+                raise kind(FactUnfit("database", why(error))) from error
             raise unavailable(error, self._engine) from error
 
 

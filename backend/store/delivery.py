@@ -27,7 +27,7 @@ from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactU
 from backend.store.engine import dispose, make_writing_engine
 from backend.store.entries import Entry, EventsEntry, JournalConflict, decode
 from backend.store.patience import patience
-from backend.store.reading import Unanswered, unanswered, why
+from backend.store.reading import Unanswered, refuses, unanswered, why
 from backend.store.spool import Spool, SpoolFull
 from backend.store.transactions import transactions_of
 from planner.reason import text_of
@@ -152,7 +152,7 @@ class Delivery:
         except REFUSED:
             raise
         except exc.DBAPIError as error:
-            if _unfit(error):
+            if refuses(error):
                 raise exc.DataError(error.statement, error.params, error.orig or error) from error
             raise DatabaseAway(unanswered(error, self._engine)) from error
         except (exc.TimeoutError, OSError) as error:
@@ -304,12 +304,6 @@ class Delivery:
 def _write(entries: Sequence[Entry], connection: Connection) -> None:
     for entry in entries:
         entry.write(connection)
-
-
-def _unfit(error: exc.DBAPIError) -> bool:
-    """Did PostgreSQL answer that a value is none that it can hold (SQLSTATE class 22)? SQLAlchemy knows that of other
-    drivers than asyncpg."""
-    return str(getattr(error.orig, "sqlstate", None) or "").startswith("22")
 
 
 def _free_bytes(path: Path) -> int | None:

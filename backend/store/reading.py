@@ -267,6 +267,14 @@ def unavailable(error: BaseException, engine: AsyncEngine) -> JournalUnavailable
     return JournalUnavailable(unanswered(error, engine))
 
 
+def refuses(error: BaseException) -> bool:
+    """Did the database answer that it will never take this? SQLAlchemy names a value that PostgreSQL cannot hold
+    (SQLSTATE class 22) by the base class only, when asyncpg says so."""
+    if isinstance(error, exc.IntegrityError | exc.DataError):
+        return True
+    return isinstance(error, exc.DBAPIError) and str(getattr(error.orig, "sqlstate", None) or "").startswith("22")
+
+
 def why(error: BaseException) -> str:
     """One line of what a driver says, without its full stop."""
     if isinstance(error, TimeoutError | exc.TimeoutError):
