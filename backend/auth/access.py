@@ -21,14 +21,16 @@ from backend.auth.passwords import Passwords, weakness
 from backend.auth.people import People
 from backend.auth.principal import Principal
 from backend.auth.provided import Provided, Rules, free_name
-from backend.auth.records import Records
+from backend.auth.records import Records, RowThere
 from backend.auth.recovery import take_recovery, use_up_recovery
 from backend.auth.registry import Invitation, Person, Session, digest, key_of, new_code, new_id, typed
 from backend.auth.sessions import Entry, Sessions
 from backend.permissions import Role
+from backend.ports import JournalUnavailable
 from backend.reasons.access import (
     CodeUnusable,
     FirstAdminExists,
+    NameTaken,
     NoPasswordHere,
     NoPeopleHere,
     ProviderRefused,
@@ -78,6 +80,7 @@ class Access:
         self._data_dir = data_dir
         self._first_code: str | None = None
         self._signing_in = 0
+        self._in_doubt = False
 
     async def load(self) -> None:
         """Once, before the first request. Raises JournalUnavailable."""
@@ -133,6 +136,7 @@ class Access:
             raise Denied(409, NoPeopleHere())
         self.limits.take_try(visit.address)
         async with self._keeping.changing:
+            await self._settle()
             if self.mode == "people":
                 raise Denied(409, FirstAdminExists())
             if self._first_code is None or not hmac.compare_digest(self._first_code, digest(typed(code))):
@@ -148,7 +152,6 @@ class Access:
         if self.mode == "alone":
             raise Denied(409, NoPeopleHere())
         now_s, key = self._keeping.monotonic_s(), key_of(name)
-        person = self.people.named(name)
         wait_s = self.limits.names.wait_s(key, now_s)
         if wait_s > 0 or self._signing_in >= WAITING_SIGN_INS:
             raise too_many(max(wait_s, 1.0))
@@ -156,6 +159,10 @@ class Access:
         self.limits.names.take(key, now_s)
         self._signing_in += 1
         try:
+            if self._in_doubt:
+                async with self._keeping.changing:
+                    await self._settle()
+            person = self.people.named(name)
             fits = await self._passwords.fits(password, None if person is None else person.password_hash)
         finally:
             self._signing_in -= 1
@@ -190,6 +197,7 @@ class Access:
         """Each invitation makes one account. Raises Denied, JournalUnavailable."""
         self.limits.take_try(visit.address)
         async with self._keeping.changing:
+            await self._settle()
             invitation = self._usable(code)
             person = await self._new_person(name, password, invitation.role, invitation.admin)
             self._usable(code)  # the hash took its time
@@ -205,6 +213,7 @@ class Access:
         if self.mode != "people":
             raise Denied(409, NoPeopleHere())
         async with self._keeping.changing:
+            await self._settle()
             before = self.people.provided(found.issuer, found.subject)
             if before is not None and not before.active:
                 raise Denied(403, ProviderRefused("shut_out"))
@@ -287,10 +296,27 @@ class Access:
 
     async def _new_with_session(self, person: Person, visit: Visit, *used: Invitation) -> str:
         secret, session = self.sessions.made(person.person_id, visit.address, visit.device)
-        await self._keeping.change(new=(person, session), now=used)
+        try:
+            await self._keeping.change(new=(person, session), now=used)
+        except RowThere as error:
+            self._in_doubt = True
+            raise Denied(409, NameTaken(person.name)) from error
+        except JournalUnavailable:
+            self._in_doubt = True
+            raise
         self.people.put(person)
         self.sessions.enter(session)
         return secret
+
+    async def _settle(self) -> None:
+        """An account whose storing was not heard of in time may be there all the same: it is known from now on, and its
+        invitation used. Raises JournalUnavailable."""
+        if not self._in_doubt or self._keeping.records is None:
+            return
+        stored = await self._keeping.records.load()
+        self.people.load(stored.people)
+        self.invitations.learn(stored.invitations)
+        self._in_doubt = False
 
     async def _new_session(self, person: Person, visit: Visit, *, changed: bool = False) -> str:
         """changed: the person is written down as well."""

@@ -41,6 +41,12 @@ class Invitations:
         """As it is now that an account was made with it."""
         self._made[used.secret_hash] = (used, self._made[used.secret_hash][1])
 
+    def learn(self, rows: Iterable[Invitation]) -> None:
+        """What the database says of those that are known."""
+        for row in rows:
+            if row.secret_hash in self._made:
+                self.use(row)
+
     @property
     def waiting(self) -> list[tuple[Invitation, float]]:
         """To be used, each with the seconds it still has; the newest first."""

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Generator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from entrance import DAY_S, PASSWORD, Clocks, again, everything_in, opened, who, with_admin
@@ -336,3 +339,66 @@ async def test_who_was_signed_out_while_the_database_was_away_stays_out_after_a_
         another = await again(url, clocks, access)
     assert who(another, secret) is None
     await another.close()
+
+
+@pytest.fixture
+def unheard(monkeypatch: pytest.MonkeyPatch) -> Callable[[], AbstractContextManager[object]]:
+    """While it is entered, whatever is stored is not heard of in time."""
+    change = Records.change
+
+    async def late(self: Records, **rows: Any) -> None:
+        await change(self, **rows)
+        raise JournalUnavailable(reasons.SignInNeeded())
+
+    @contextmanager
+    def entered() -> Generator[None]:
+        with monkeypatch.context() as meanwhile:
+            meanwhile.setattr(Records, "change", late)
+            yield
+
+    return entered
+
+
+@pytest.mark.parametrize("name", ["Olga", "Olga B"])
+async def test_an_account_that_was_stored_unheard_uses_its_invitation_and_enters(
+    access: Access, unheard: Callable[[], AbstractContextManager[object]], name: str
+) -> None:
+    await with_admin(access)
+    code, _ = await access.invitations.make("operator", False, 3600, access.people.by_name[0].person_id)
+    with unheard(), pytest.raises(JournalUnavailable):
+        await access.accept_invitation(code, "Olga", PASSWORD, Visit("a", ""))
+    with refusing(reasons.CodeUnusable("used"), Denied):
+        await access.accept_invitation(code, name, PASSWORD, Visit("a", ""))
+    assert who(access, await access.sign_in("Olga", PASSWORD, Visit("a", ""))) == "Olga"
+    assert [person.name for person in access.people.by_name] == ["Ada", "Olga"]
+
+
+async def test_an_account_that_was_stored_unheard_signs_in_at_once(
+    access: Access, unheard: Callable[[], AbstractContextManager[object]]
+) -> None:
+    code = access.begin_first_admin() or ""
+    with unheard(), pytest.raises(JournalUnavailable):
+        await access.make_first_admin(code, "Ada", PASSWORD, Visit("a", ""))
+    assert who(access, await access.sign_in("Ada", PASSWORD, Visit("a", ""))) == "Ada"
+
+
+async def test_a_first_admin_who_was_stored_unheard_is_the_only_one(
+    access: Access, unheard: Callable[[], AbstractContextManager[object]]
+) -> None:
+    code = access.begin_first_admin() or ""
+    with unheard(), pytest.raises(JournalUnavailable):
+        await access.make_first_admin(code, "Ada", PASSWORD, Visit("a", ""))
+    with refusing(reasons.FirstAdminExists(), Denied):
+        await access.make_first_admin(code, "Eve", PASSWORD, Visit("b", ""))
+
+
+async def test_a_name_that_only_the_database_knows_is_taken(access: Access, url: str, clocks: Clocks) -> None:
+    """As when what was sent arrives after it was asked for."""
+    beside = opened(url, clocks)
+    await with_admin(beside)
+    await beside.close()
+    code = access.begin_first_admin() or ""
+    with refusing(reasons.NameTaken("Ada"), Denied):
+        await access.make_first_admin(code, "Ada", PASSWORD, Visit("a", ""))
+    with refusing(reasons.FirstAdminExists(), Denied):
+        await access.make_first_admin(code, "Ada", PASSWORD, Visit("a", ""))
