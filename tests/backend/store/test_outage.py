@@ -8,6 +8,7 @@ import random
 import sqlite3
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -275,6 +276,20 @@ async def test_what_was_acknowledged_survives_kill_9(bench, tmp_path):
         await bench.close()
         assert [record.seq for record in stored] == list(range(1, len(stored) + 1))
         assert acknowledged <= len(stored) <= acknowledged + 1
+
+
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+async def test_a_database_that_hangs_is_given_up_in_the_time_that_was_set(bench, postgres_cluster):
+    journal = await bench.open()
+    await journal.append("m", [DRAFT])
+    postgres_cluster.pause()
+    try:
+        began = time.monotonic()
+        await journal.append("m", [DRAFT])
+        took_s = time.monotonic() - began
+    finally:
+        postgres_cluster.resume()
+    assert took_s < bench.timeout_s + 1.0  # to close a connection in good order took two seconds more
 
 
 @pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
