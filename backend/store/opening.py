@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
@@ -23,7 +24,11 @@ from backend.store.told_folder import ToldFolder
 from backend.store.ways_files import WaysFiles
 from planner.reason import ReasonedError
 
+log = logging.getLogger("crossfix.store")
+
 CLAIM_PATIENCE_S = 3.0
+MIGRATES_S = 30.0
+"""So long a database that does not answer is waited for."""
 
 
 class DatabaseUnusable(ReasonedError, RuntimeError):
@@ -71,7 +76,7 @@ def claimed(url: str) -> Generator[None]:
 async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> AsyncGenerator[SqlJournal]:
     shown = url.split("@")[-1] if "@" in url else url
     try:
-        await migrate(url)
+        await _migrated(url, shown, settings.database_timeout_s)
         spool = await asyncio.to_thread(Spool, settings.spool_path, settings.spool_reserve_bytes, CLAIM_PATIENCE_S)
     except SpoolTaken as error:
         raise DatabaseUnusable(AnotherServer(str(settings.spool_path))) from error
@@ -103,3 +108,17 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
             task.cancel()
         await asyncio.gather(*beside, return_exceptions=True)
         await journal.close()
+
+
+async def _migrated(url: str, shown: str, soon_s: float) -> None:
+    """Whoever starts the server hears what it waits for. Raises what `migrate` does."""
+    task = asyncio.create_task(migrate(url, MIGRATES_S))
+    _, waiting = await asyncio.wait({task}, timeout=soon_s)
+    if waiting:
+        log.warning(
+            "waiting for the database %s: it does not answer yet (%.0f s at most), or its tables are being brought up "
+            "to date",
+            shown,
+            MIGRATES_S,
+        )
+    await task

@@ -51,6 +51,23 @@ async def test_a_database_that_cannot_be_used_is_named_with_what_to_try(tmp_path
     assert "CROSSFIX_DATABASE_URL" in remedy_of(refused.value.reason)
 
 
+async def test_a_start_says_early_that_it_waits_for_the_database(tmp_path, caplog):
+    async def hang_up(_reader, writer):
+        await asyncio.sleep(0.6)
+        writer.close()
+
+    silent = await asyncio.start_server(hang_up, "127.0.0.1", 0)
+    port = silent.sockets[0].getsockname()[1]
+    url = f"postgresql://crossfix:secret@127.0.0.1:{port}/x"
+    settings = Settings(data_dir=tmp_path, database_url=url, database_timeout_s=0.2)
+    with pytest.raises(DatabaseUnusable):
+        async with open_journal(settings, lambda: 0.0):
+            pass
+    silent.close()
+    assert f"127.0.0.1:{port}/x" in caplog.text
+    assert "secret" not in caplog.text
+
+
 @pytest.fixture
 def narrow_url(postgres_cluster):
     """A database that has no letters but those of western Europe."""
