@@ -234,6 +234,8 @@ def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Pa
             path = folder / str(place)
             path.parent.mkdir(parents=True, exist_ok=True)
             with path.open("xb") as file:
+                if str(place).endswith((AUDIT_FILE, AUDIT_BEFORE)):
+                    os.fchmod(file.fileno(), 0o600)  # as the server makes it
                 for block in archive.blocks(member):
                     file.write(block)
                 file.flush()

@@ -181,6 +181,7 @@ async def test_a_server_that_has_only_started_takes_a_backup_and_keeps_its_own_a
         assert await told(journal) == before
     assert (there.data_dir / AUDIT_FILE).read_bytes() == b"here\n"
     assert (there.data_dir / AUDIT_BEFORE).read_bytes() == b"there\n"
+    assert (there.data_dir / AUDIT_FILE).stat().st_mode & 0o077 == 0  # as the server makes it
 
 
 async def test_a_target_that_holds_something_is_left_as_it_is(tmp_path, request):
