@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -120,7 +121,11 @@ def _join(threads: Iterable[Thread]) -> None:
 def _make_folder(url: str | URL) -> None:
     database = make_url(url).database
     if database and database != ":memory:":
-        Path(database).parent.mkdir(parents=True, exist_ok=True)
+        path = Path(database)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.exists() and not database.startswith("file:"):
+            with suppress(OSError):  # SQLite says what is wrong
+                path.touch(0o600)  # it holds what passwords and sessions are known by; SQLite's files beside it follow
 
 
 def _configure_sqlite(engine: Engine) -> None:

@@ -28,6 +28,12 @@ async def test_migrating_again_changes_nothing(bench):
     assert await (await bench.open("other.spool")).read("m") == written
 
 
+async def test_nobody_else_reads_a_new_database_file(tmp_path):
+    async with open_journal(Settings(data_dir=tmp_path), lambda: 0.0):
+        kept = [path for path in tmp_path.iterdir() if path.suffix != ".server"]
+        assert [path.name for path in kept if path.stat().st_mode & 0o077] == []
+
+
 async def test_a_second_server_on_the_same_database_or_data_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(opening, "CLAIM_PATIENCE_S", 0.1)
     settings = Settings(data_dir=tmp_path / "one")
