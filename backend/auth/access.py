@@ -23,7 +23,7 @@ from backend.auth.principal import Principal
 from backend.auth.provided import Provided, Rules, free_name
 from backend.auth.records import Records, RowThere
 from backend.auth.recovery import take_recovery, use_up_recovery
-from backend.auth.registry import Invitation, Person, Session, digest, key_of, new_code, new_id, typed
+from backend.auth.registry import Invitation, Person, Session, digest, key_of, new_code, new_id, shown_key, typed
 from backend.auth.sessions import Entry, Sessions
 from backend.permissions import Role
 from backend.ports import JournalUnavailable
@@ -285,8 +285,8 @@ class Access:
         return Person(new_id(), shown, key_of(shown), role, admin, True, hashed, self._keeping.now_us())
 
     def _new_provided(self, found: Provided, role: Role) -> Person:
-        taken = frozenset(person.name_key for person in self.people.by_name)
-        name, made_us = free_name(found.names, taken, key_of), self._keeping.now_us()
+        taken = frozenset(shown_key(person.name) for person in self.people.by_name)
+        name, made_us = free_name(found.names, taken, shown_key), self._keeping.now_us()
         return Person(new_id(), name, key_of(name), role, found.admin, True, "", made_us, found.issuer, found.subject)
 
     async def _good_password(self, password: str, name: str) -> str:

@@ -11,6 +11,7 @@ import unicodedata
 from dataclasses import dataclass
 from uuid import uuid4
 
+from backend.names import without_unseen
 from backend.permissions import Role, Scope
 
 ALPHABET = "ABCDEFGHJKMNPQRSTVWXYZ23456789"
@@ -111,4 +112,4 @@ def key_of(name: str) -> str:
 
 def shown_key(name: str) -> str:
     """As key_of, without the letters that are not shown: a name that differs by those alone looks the same."""
-    return key_of("".join(letter for letter in name if unicodedata.category(letter) != "Cf"))
+    return key_of(without_unseen(name))

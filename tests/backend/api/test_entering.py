@@ -355,7 +355,7 @@ async def test_a_resume_to_the_craft_itself_passes_by_no_lease(shared: FastAPI, 
         assert reason(again) == "command_id_reused"
 
 
-@pytest.mark.parametrize("name", ["\u200b", "\u202eadA", "x\ufffe", "\ufdd0"])
+@pytest.mark.parametrize("name", ["\u200b", "\u202eadA", "x\ufffe", "\ufdd0", "\u3164", "\u115f ", "\ufe0f", "\u2800"])
 async def test_a_name_that_lists_would_not_show_as_it_is_makes_no_account(
     shared: FastAPI, access: Access, name: str
 ) -> None:

@@ -184,7 +184,21 @@ async def test_across_a_restart_time_goes_on_and_a_clock_set_back_revives_nothin
 
 
 @pytest.mark.parametrize(
-    "name", ["ada", " Ada", "\uff21da", "A\u0064a", "Ada\u200b", "A\u00adda", "\ufeffAda", "A\u200dda"]
+    "name",
+    [
+        "ada",
+        " Ada",
+        "\uff21da",
+        "A\u0064a",
+        "Ada\u200b",
+        "A\u00adda",
+        "\ufeffAda",
+        "A\u200dda",
+        "Ada\ufe0f",
+        "A\u034fda",
+        "Ada\u3164",
+        "\u2800Ada",
+    ],
 )
 async def test_no_two_people_have_names_that_look_alike(access: Access, name: str) -> None:
     """Else an operator could give orders, and report bearings, as what every list shows as somebody else."""
