@@ -217,7 +217,7 @@ class Settings(BaseSettings):
     def shown_database(self) -> str:
         """Its URL without user and password, for people and logs."""
         scheme, _, rest = self.async_database_url.partition("://")
-        return f"{scheme}://{rest.rpartition('@')[2]}"
+        return f"{scheme}://{rest.rpartition('@')[2].partition('?')[0]}"  # the query may hold a password as well
 
     @property
     def spool_path(self) -> Path:

@@ -74,7 +74,7 @@ def claimed(url: str) -> Generator[None]:
 
 @asynccontextmanager
 async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> AsyncGenerator[SqlJournal]:
-    shown = url.split("@")[-1] if "@" in url else url
+    shown = settings.shown_database
     try:
         await _migrated(url, shown, settings.database_timeout_s)
         spool = await asyncio.to_thread(Spool, settings.spool_path, settings.spool_reserve_bytes, CLAIM_PATIENCE_S)

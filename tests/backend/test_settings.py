@@ -93,3 +93,12 @@ async def test_a_link_to_the_pages_address_is_not_turned_away(tmp_path: Path) ->
             for host in ("field.example:8443", "e.example")
         }
     assert told == {"field.example:8443": 503, "e.example": 421}
+
+
+@pytest.mark.parametrize(
+    "url", ["postgresql://app:hush@h:5/x", "postgresql://h:5/x?user=app&password=hush&ssl=require"]
+)
+def test_the_shown_database_holds_no_password(url: str) -> None:
+    shown = Settings(database_url=url).shown_database
+    assert "h:5/x" in shown
+    assert not any(word in shown for word in ("hush", "app"))
