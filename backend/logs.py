@@ -74,4 +74,5 @@ def configure(settings: Settings, verbose: bool = False) -> None:
             settings.log_file, maxBytes=settings.log_file_bytes, backupCount=settings.log_files_kept, encoding="utf-8"
         )
         handlers.append(_handler(file, "json", logging.INFO))
+    logging.getLogger("aiosqlite").setLevel(logging.INFO)  # below it tells all values, digests of passwords too
     logging.basicConfig(level=min(handler.level for handler in handlers), handlers=handlers, force=True)

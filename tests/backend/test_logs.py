@@ -9,9 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from sqlalchemy import text
 
 from backend.logs import about, configure
 from backend.settings import Settings
+from backend.store.engine import dispose, make_engine
 
 log = logging.getLogger("crossfix.test")
 
@@ -91,3 +93,13 @@ def test_the_terminal_may_get_json_too(capsys):
     configure(Settings(log_format="json", log_level="info"))
     log.info("shown")
     assert json.loads(capsys.readouterr().err)["message"] == "shown"
+
+
+async def test_no_line_holds_what_a_driver_was_given(tmp_path, capsys):
+    """Digests of passwords and sessions among it."""
+    configure(Settings(log_level="debug"))
+    engine = make_engine(f"sqlite+aiosqlite:///{tmp_path / 'x.sqlite'}", 2.0)
+    async with engine.connect() as connection:
+        await connection.execute(text("SELECT :given"), {"given": "argon2id$hush"})
+    await dispose(engine)
+    assert "hush" not in capsys.readouterr().err
