@@ -52,12 +52,14 @@ def make_engine(url: str | URL, timeout_s: float) -> AsyncEngine:
         pool_timeout=timeout_s,
         connect_args={"timeout": timeout_s, "server_settings": {"application_name": "crossfix"}},
     )
-    event.listen(engine.sync_engine, "invalidate", _cut_off)
+    for ends in ("invalidate", "close"):
+        event.listen(engine.sync_engine, ends, _cut_off)
     return engine
 
 
-def _cut_off(connection: Any, _record: Any, _error: Any) -> None:
-    """A connection that is given up is not closed in good order, for which SQLAlchemy would wait two seconds more."""
+def _cut_off(connection: Any, *_: Any) -> None:
+    """No connection is closed in good order: beside a PostgreSQL that hangs SQLAlchemy would wait two seconds for one
+    that is given up, and without end for one that is idle."""
     connection.driver_connection.terminate()
 
 

@@ -293,6 +293,18 @@ async def test_a_database_that_hangs_is_given_up_in_the_time_that_was_set(bench,
 
 
 @pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+async def test_a_server_ends_beside_a_database_that_hangs(bench, postgres_cluster):
+    journal = await bench.open()
+    await journal.append("m", [DRAFT])
+    postgres_cluster.pause()
+    try:
+        async with asyncio.timeout(3.0):
+            await bench.close()
+    finally:
+        postgres_cluster.resume()
+
+
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
 async def test_a_crowd_of_readers_keeps_no_fact_from_being_stored(bench):
     journal = await bench.open()
     await journal.append("m", [DRAFT])
