@@ -26,7 +26,6 @@ from backend.auth.recovery import take_recovery, use_up_recovery
 from backend.auth.registry import Invitation, Person, Session, digest, key_of, new_code, new_id, shown_key, typed
 from backend.auth.sessions import Entry, Sessions
 from backend.permissions import Role
-from backend.ports import JournalUnavailable
 from backend.reasons.access import (
     CodeUnusable,
     FirstAdminExists,
@@ -80,7 +79,6 @@ class Access:
         self._data_dir = data_dir
         self._first_code: str | None = None
         self._signing_in = 0
-        self._in_doubt = False
 
     async def load(self) -> None:
         """Once, before the first request. Raises JournalUnavailable."""
@@ -159,9 +157,7 @@ class Access:
         self.limits.names.take(key, now_s)
         self._signing_in += 1
         try:
-            if self._in_doubt:
-                async with self._keeping.changing:
-                    await self._settle()
+            await self._settle_apart()
             person = self.people.named(name)
             fits = await self._passwords.fits(password, None if person is None else person.password_hash)
         finally:
@@ -238,6 +234,7 @@ class Access:
         if self._data_dir is None or self.mode != "people":
             raise Denied(403, CodeUnusable("unknown"))
         async with self._keeping.changing:
+            await self._settle()
             found = take_recovery(self._data_dir, code, self._keeping.wall_s())
             before = self.people.known(found.person_id)
             hashed = await self._good_password(password, before.name)
@@ -254,6 +251,7 @@ class Access:
 
     async def change_password(self, person_id: str, old: str, new: str, address: str, session_id: str | None) -> None:
         """All sessions but the one that asks end. Raises Denied, JournalUnavailable."""
+        await self._settle_apart()
         person = self.people.known(person_id)
         if not person.password_hash:
             raise Denied(409, NoPasswordHere())
@@ -273,6 +271,7 @@ class Access:
 
     async def change_person(self, person_id: str, role: Role, admin: bool, active: bool) -> Person:
         """Who is shut out is signed out at once. Raises Denied, JournalUnavailable."""
+        await self._settle_apart()
         now = await self.people.change(person_id, role, admin, active)
         if not active:
             await self.sessions.end_all(person_id)
@@ -299,24 +298,26 @@ class Access:
         try:
             await self._keeping.change(new=(person, session), now=used)
         except RowThere as error:
-            self._in_doubt = True
             raise Denied(409, NameTaken(person.name)) from error
-        except JournalUnavailable:
-            self._in_doubt = True
-            raise
         self.people.put(person)
         self.sessions.enter(session)
         return secret
 
     async def _settle(self) -> None:
-        """An account whose storing was not heard of in time may be there all the same: it is known from now on, and its
-        invitation used. Raises JournalUnavailable."""
-        if not self._in_doubt or self._keeping.records is None:
+        """What was not heard of in time may be stored all the same, as an account with its invitation, or a password:
+        it counts from now on. Raises JournalUnavailable."""
+        if not self._keeping.in_doubt or self._keeping.records is None:
             return
         stored = await self._keeping.records.load()
         self.people.load(stored.people)
         self.invitations.learn(stored.invitations)
-        self._in_doubt = False
+        self._keeping.in_doubt = False
+
+    async def _settle_apart(self) -> None:
+        """For whoever does not hold the registers. Raises JournalUnavailable."""
+        if self._keeping.in_doubt:
+            async with self._keeping.changing:
+                await self._settle()
 
     async def _new_session(self, person: Person, visit: Visit, *, changed: bool = False) -> str:
         """changed: the person is written down as well."""

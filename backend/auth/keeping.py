@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from backend.auth.records import Records, Row
+from backend.auth.records import Records, Row, RowThere
+from backend.auth.registry import Invitation, Person
 from backend.ports import JournalUnavailable
 from backend.reasons import Reason
 from planner.reason import ReasonedError
@@ -37,13 +38,15 @@ class Denied(ReasonedError):
 class Keeping:
     """records None: nothing is kept (a server on paper, for tests of other things).
 
-    changing: held by whoever looks at the registers and then changes them.
+    changing: held by whoever looks at the registers and then changes them. in_doubt: the database may hold a change of
+    people or invitations that memory does not know.
     """
 
     records: Records | None
     wall_s: Callable[[], float] = time.time
     monotonic_s: Callable[[], float] = time.monotonic
     changing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    in_doubt: bool = False
     _writing: set[asyncio.Task[None]] = field(default_factory=set[asyncio.Task[None]])
     _left: list[Row] = field(default_factory=list[Row])
     _removing: asyncio.Task[None] | None = None
@@ -55,7 +58,12 @@ class Keeping:
     async def change(self, *, new: Iterable[Row] = (), now: Iterable[Row] = (), gone: Iterable[Row] = ()) -> None:
         """All or nothing, see Records.change. Raises JournalUnavailable."""
         if self.records is not None:
-            await self.records.change(new=tuple(new), now=tuple(now), gone=tuple(gone))
+            new, now, gone = tuple(new), tuple(now), tuple(gone)
+            try:
+                await self.records.change(new=new, now=now, gone=gone)
+            except (JournalUnavailable, RowThere):
+                self.in_doubt |= any(isinstance(row, Person | Invitation) for row in (*new, *now))
+                raise
 
     async def remove(self, rows: Iterable[Row]) -> None:
         """What the database does not take now it is asked again until it does: a row that stayed would let somebody in

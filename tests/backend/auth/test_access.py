@@ -416,3 +416,17 @@ async def test_a_name_that_only_the_database_knows_is_taken(access: Access, url:
         await access.make_first_admin(code, "Ada", PASSWORD, Visit("a", ""))
     with refusing(reasons.FirstAdminExists(), Denied):
         await access.make_first_admin(code, "Ada", PASSWORD, Visit("a", ""))
+
+
+async def test_a_password_that_was_stored_unheard_is_the_one_from_then_on(
+    access: Access, unheard: Callable[[], AbstractContextManager[object]]
+) -> None:
+    """As after a restart, and a later change of the person does not bring the old one back."""
+    await with_admin(access)
+    person_id, new = access.people.by_name[0].person_id, "another good one 5"
+    with unheard(), pytest.raises(JournalUnavailable):
+        await access.change_password(person_id, PASSWORD, new, "a", None)
+    await access.change_person(person_id, "viewer", admin=True, active=True)
+    with refusing(reasons.WrongNameOrPassword(), Denied):
+        await access.sign_in("Ada", PASSWORD, Visit("a", ""))
+    assert who(access, await access.sign_in("Ada", new, Visit("a", ""))) == "Ada"
