@@ -623,4 +623,20 @@ export const pagesEn = {
   "scene.loading": "Building the 3D scene …",
   "scene.show": "3D",
   "scene.map": "Map",
+
+  "tour.offer": "First time here? A tour of one minute shows the screen with a mission that flies itself.",
+  "tour.take": "Take the tour",
+  "tour.later": "Not now",
+  "tour.next": "Next",
+  "tour.back": "Back",
+  "tour.end": "End the tour",
+  "tour.step": "{step} of {count}",
+  "tour.1":
+    "Abort, hold and return are one tap away on every page, on a phone at its foot. The bar says what the vehicle does, who has control and what it waits for.",
+  "tour.2":
+    "The map shows where the emitter may be: brighter is likelier, nothing is impossible. The outline holds 95 %. Lines are bearings, with their error as a wedge.",
+  "tour.3": "The estimate, its expected error and how long it still takes. It says “not yet”, with the reason, until two places agree.",
+  "tour.4": "The newest sweep: received power against heading and the fit of the antenna's pattern. Bad sweeps are taken again.",
+  "tour.5": "The next place and why. Drag it or click the map to try another: you see what it costs before you slide.",
+  "tour.6": "Everything that happened. Drag the handle to look back; “Live” brings you to now.",
 };

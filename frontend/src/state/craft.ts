@@ -92,12 +92,11 @@ export function foldCraft(state: CraftState, event: MissionEvent, seq: number, a
         returnsAt: null,
       };
     case "hold_ordered":
+    case "resume_ordered":
       // a failsafe that flew in hold until then changed no phase, and neither does the order
       return event.by === null || state.phase !== "hold"
         ? state
-        : { ...state, phaseReason: { code: "ordered", order: "hold", by: event.by } };
-    case "resume_ordered":
-      return state.phase === "hold" ? { ...state, phaseReason: { code: "ordered", order: "resume", by: event.by } } : state;
+        : { ...state, phaseReason: { code: "ordered", order: event.kind === "hold_ordered" ? "hold" : "resume", by: event.by } };
     case "battery_countdown_started":
       return { ...state, returnsAt: new Date(Date.parse(at) + event.seconds * 1000).toISOString() };
     case "battery_countdown_stopped":

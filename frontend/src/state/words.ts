@@ -40,17 +40,20 @@ const HOLDING_LINK: Partial<Record<ReasonCode, LinkName>> = {
  * holds; a link that is back since is said to be back.
  */
 function holdWords({ phaseReason, lost, alerts, craftId, authority }: MissionView, reason: string): string {
-  const { who, mode, given_back, failsafe_landed } = authority;
-  const open = alerts.filter((alert) => alert.craftId === craftId && !alert.cleared);
-  const [flies, stopped] = [who === "failsafe" && !given_back, who === "failsafe" && given_back];
-  const told = open.find(({ topic }) => topic === "vehicle")?.reason;
-  if (flies && told?.code === "failsafe_flies") return reasonText(told);
-  if (failsafe_landed || open.some(({ topic }) => topic === "ground")) return t("state.ground");
-  if (phaseReason?.code === "failsafe_flies" && !stopped) return reason;
-  if (flies) return whoFlies(who, mode ?? "", false);
-  if (stopped && told) return t("state.hold", { reason: reasonText(told) });
+  const open = (topic: "vehicle" | "ground") =>
+    alerts.find((alert) => alert.topic === topic && alert.craftId === craftId && !alert.cleared)?.reason;
+  const failsafe = authority.who === "failsafe";
+  const stopped = failsafe && authority.given_back;
+  const told = open("vehicle");
+  const why = stopped && told ? reasonText(told) : null;
+  if (failsafe && !stopped && told?.code === "failsafe_flies") return reasonText(told);
+  if (authority.failsafe_landed || open("ground")) return t("state.ground");
+  if (!stopped && phaseReason?.code === "failsafe_flies") return reason;
+  if (failsafe && !stopped) return whoFlies("failsafe", authority.mode ?? "", false);
   const link = phaseReason && HOLDING_LINK[phaseReason.code];
-  return link && !lost[link] ? t("state.hold.back", { link: t(`link.${link}` satisfies MessageKey) }) : t("state.hold", { reason });
+  return !why && link && !lost[link]
+    ? t("state.hold.back", { link: t(`link.${link}` satisfies MessageKey) })
+    : t("state.hold", { reason: why ?? reason });
 }
 
 /** Who flies; mode: the autopilot's name of what it flies in. */
