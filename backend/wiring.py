@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from backend.api.services import Services
 from backend.api.suggestion import suggested_mission
+from backend.api.upload_folder import remove_left_behind
 from backend.auth.access import Access
 from backend.auth.audit import AuditLog
 from backend.auth.records import Records
@@ -283,6 +284,7 @@ async def open_simulation(
                     bearings=None if feed is None else feed.health,
                     access=access, provider=provider, finder=finder, pattern=pattern,
                 )  # fmt: skip
+                await asyncio.to_thread(remove_left_behind)
                 try:
                     yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
                 finally:

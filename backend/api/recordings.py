@@ -6,7 +6,6 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import shutil
-import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -19,6 +18,7 @@ from pydantic import AfterValidator, Field, StringConstraints
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
+from backend.api.upload_folder import upload_folder
 from backend.bearing_file import read_bearing_file
 from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
 from backend.reasons import request as reasons
@@ -92,11 +92,11 @@ async def import_recording(
     One file, or for SigMF its meta and data file (which are kept) and, when the recording carries no headings, a CSV of
     time and heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
     """
-    with tempfile.TemporaryDirectory(prefix="crossfix-recording-") as folder:
-        upload = await _read(form, services.workers, Path(folder))
+    with upload_folder() as folder:
+        upload = await _read(form, services.workers, folder)
         await _must_fit(services, mission_id, upload)
         facts, already = await services.missions.drafts.import_recording(mission_id, upload, principal.name)
-        iq_kept = await asyncio.to_thread(services.iq.keep, mission_id, upload.recording_id, Path(folder))
+        iq_kept = await asyncio.to_thread(services.iq.keep, mission_id, upload.recording_id, folder)
     if already:
         response.status_code = 200
     return _reply(facts, already, iq_kept)
