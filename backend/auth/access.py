@@ -238,9 +238,9 @@ class Access:
             found = take_recovery(self._data_dir, code, self._keeping.wall_s())
             before = self.people.known(found.person_id)
             hashed = await self._good_password(password, before.name)
-            use_up_recovery(self._data_dir)
             now = replace(before, password_hash=hashed, active=True, admin=before.admin or found.admin)
-            await self._keeping.change(now=(now,))
+            with use_up_recovery(self._data_dir):
+                await self._keeping.change(now=(now,))
             self.people.put(now)
             await self.sessions.end_all(now.person_id)
             secret = await self._new_session(now, visit)

@@ -9,7 +9,8 @@ from __future__ import annotations
 import hmac
 import json
 import os
-from contextlib import suppress
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -56,9 +57,20 @@ def take_recovery(data_dir: Path, code: str, now_s: float) -> Recovery:
     return found
 
 
-def use_up_recovery(data_dir: Path) -> None:
-    """Before anything is changed with it. Raises OSError."""
-    (data_dir / RECOVERY_FILE).unlink()
+@contextmanager
+def use_up_recovery(data_dir: Path) -> Generator[None]:
+    """What is changed with it is changed within: nobody else can take it meanwhile, and it is there again when the
+    change fails, unless another was made since. A server that is killed within has used it up. Raises OSError."""
+    path, taken = data_dir / RECOVERY_FILE, data_dir / f"{RECOVERY_FILE}.taken"
+    path.rename(taken)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            os.link(taken, path)
+        raise
+    finally:
+        taken.unlink(missing_ok=True)
 
 
 def same_owner(path: Path) -> None:

@@ -21,7 +21,8 @@ from backend.auth.passwords import Passwords
 from backend.auth.records import Records
 from backend.auth.recovery import LASTS_S, RECOVERY_FILE, make_recovery
 from backend.cli.main import app
-from backend.reasons.access import CodeUnusable, PasswordWeak
+from backend.ports import JournalUnavailable
+from backend.reasons.access import CodeUnusable, PasswordWeak, SignInNeeded
 from backend.settings import AUDIT_FILE
 from backend.store.engine import make_engine, migrate
 
@@ -78,6 +79,51 @@ async def test_a_code_works_once_and_the_last_one_only(scene: Scene) -> None:
     with refusing(CodeUnusable("unknown"), Denied):
         await scene.access.recover(second, NEW, HERE)
     assert not (scene.data_dir / RECOVERY_FILE).exists()
+
+
+@pytest.mark.parametrize("stored", [False, True])
+async def test_a_database_that_does_not_answer_costs_no_code(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch, stored: bool
+) -> None:
+    """Whoever heard nothing of the new password needs the code again."""
+    code, change = scene.code(), Records.change
+
+    async def silent(self: Records, **rows: Any) -> None:
+        assert not (scene.data_dir / RECOVERY_FILE).exists()  # another server would take it a second time
+        if stored:
+            await change(self, **rows)
+        raise JournalUnavailable(SignInNeeded())
+
+    with monkeypatch.context() as meanwhile:
+        meanwhile.setattr(Records, "change", silent)
+        with pytest.raises(JournalUnavailable):
+            await scene.access.recover(code, NEW, HERE)
+    assert await scene.access.recover(code, NEW, HERE)
+    with refusing(CodeUnusable("unknown"), Denied):
+        await scene.access.recover(code, NEW, HERE)
+    assert not list(scene.data_dir.glob(f"{RECOVERY_FILE}*"))
+
+
+async def test_a_code_that_was_made_meanwhile_stays_the_one_that_works(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = list[str]()
+
+    async def silent(*_: Any, **__: Any) -> None:
+        made.append(scene.code())
+        raise JournalUnavailable(SignInNeeded())
+
+    with monkeypatch.context() as meanwhile:
+        meanwhile.setattr(Records, "change", silent)
+        with pytest.raises(JournalUnavailable):
+            await scene.access.recover(scene.code(), NEW, HERE)
+    assert await scene.access.recover(made[0], NEW, HERE)
+
+
+async def test_of_two_at_once_with_one_code_one_enters(scene: Scene) -> None:
+    code = scene.code()
+    done = await asyncio.gather(*(scene.access.recover(code, NEW, HERE) for _ in range(2)), return_exceptions=True)
+    assert [type(one) for one in done if not isinstance(one, str)] == [Denied]
 
 
 @pytest.mark.parametrize("jump_s", [LASTS_S, 365 * 86_400.0, -1.0])
