@@ -149,7 +149,7 @@ class Access:
         """Raises Denied, JournalUnavailable."""
         if self.mode == "alone":
             raise Denied(409, NoPeopleHere())
-        now_s, key = self._keeping.monotonic_s(), key_of(name)
+        now_s, key = self._keeping.monotonic_s(), shown_key(name)
         wait_s = self.limits.names.wait_s(key, now_s)
         if wait_s > 0 or self._signing_in >= WAITING_SIGN_INS:
             raise too_many(max(wait_s, 1.0))

@@ -40,8 +40,13 @@ class People:
         return found
 
     def named(self, name: str) -> Person | None:
-        """None: nobody is called so."""
-        return next((person for person in self._all.values() if person.name_key == key_of(name)), None)
+        """Also without the letters that are not shown, which Persian and Hindi names have, where that names one person.
+        None: nobody is called so."""
+        found = next((person for person in self._all.values() if person.name_key == key_of(name)), None)
+        if found is not None:
+            return found
+        alike = [person for person in self._all.values() if shown_key(person.name) == shown_key(name)]
+        return alike[0] if len(alike) == 1 else None
 
     def provided(self, issuer: str, subject: str) -> Person | None:
         """Whoever that is at the sign-in provider. Never by name or email, which others may give themselves there."""
