@@ -193,6 +193,8 @@ async def _in_postgresql(url: str) -> LeftInFlight | None:
         async with asyncio.timeout(DATABASE_ANSWERS_S):
             connection = await asyncpg.connect(url.replace(POSTGRESQL, "postgresql:", 1))
             try:
+                if await connection.fetchval("SELECT to_regclass('missions')") is None:  # it would log an error
+                    return None
                 return await _in_flight(connection.fetch)
             finally:
                 connection.terminate()

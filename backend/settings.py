@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
@@ -14,6 +15,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 REPOSITORY = Path(__file__).resolve().parent.parent
 BUILT_PAGE, INSTALLED_PAGE = REPOSITORY / "frontend" / "dist", Path(__file__).resolve().parent / "page"
 """Where `make build` puts the page, and where a wheel has it."""
+DATABASE_PORT = re.compile(r"[\w+]+://(?:[^:/]*(?::[^@]*)?@)?(?:\[[^/?]+\]|[^/:?]+)?(?::([^/?]*))?")
+"""As SQLAlchemy reads a URL."""
 AUDIT_FILE = "audit.jsonl"
 """Who did what, in the data directory."""
 
@@ -133,9 +136,14 @@ class Settings(BaseSettings):
     @classmethod
     def known_database(cls, url: str | None) -> str | None:
         """By the URL's scheme; whether it answers shows when the journal is opened."""
-        if url is None or url.startswith(("sqlite:", "postgresql:", "postgres:", "sqlite+", "postgresql+")):
-            return url
-        raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
+        if url is None:
+            return None
+        if not url.startswith(("sqlite:", "postgresql:", "postgres:", "sqlite+", "postgresql+")):
+            raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
+        port = DATABASE_PORT.match(url)
+        if port and port[1] and not (port[1].isdecimal() and 0 < int(port[1]) < 2**16):  # not shown: a password may be
+            raise ValueError("the database URL's port must be a number from 1 to 65535 (write @ in a password as %40)")
+        return url
 
     @field_validator("public_url")
     @classmethod

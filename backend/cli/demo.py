@@ -25,6 +25,7 @@ from backend.store.opening import DatabaseUnusable
 from backend.store.reading import JournalUnavailable
 from hardware.direction_finding.pattern_file import PatternError
 from hardware.ports import HardwareError
+from planner.reason import text_of
 
 CARRIER = EmitterSpec()
 TAG = EmitterSpec(frequency_hz=150_000_000.0, kind="pulsed", label="wildlife tag")
@@ -172,7 +173,7 @@ def demo(
     except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
         stop(error)
     except (DatabaseAway, JournalUnavailable) as error:
-        typer.echo(f"crossfix: the database does not answer ({error}); try again", err=True)
+        typer.echo(f"crossfix: {words_of(text_of(error.reason))} Try again.", err=True)
         raise typer.Exit(1) from None
     except (DemoFailed, httpx.HTTPError, websockets.WebSocketException, OSError) as error:
         typer.echo(f"crossfix: {words_of(error)}", err=True)

@@ -11,6 +11,7 @@ import typer
 
 from backend.cli.edge import print_json, stop
 from backend.settings import AUDIT_FILE, Settings, settings_of
+from planner.reason import text_of
 
 
 def recover(
@@ -36,7 +37,7 @@ def recover(
         settings = settings_of(database_url=database, data_dir=data_dir)
         shown, code = asyncio.run(_made(settings, name, admin))
     except JournalUnavailable as error:
-        stop(f"the database does not answer ({error}); is this the data directory of the server (--data-dir)?")
+        stop(f"{text_of(error.reason)} Is this the data directory of the server (--data-dir)?")
     except (Denied, ValueError) as error:
         stop(error)
     except OSError as error:

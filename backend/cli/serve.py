@@ -13,7 +13,7 @@ from backend.cli.edge import print_json, remark, stop
 from backend.logs import configure
 from backend.settings import Settings, settings_of
 from planner.loading import load
-from planner.reason import ReasonedError
+from planner.reason import ReasonedError, text_of
 
 if TYPE_CHECKING:  # it loads seconds of libraries, and a vehicle left in flight is to be held first
     from backend.auth.access import Mode
@@ -137,7 +137,7 @@ def _stop_because(error: ReasonedError | RuntimeError | ValueError) -> NoReturn:
 
     match error:
         case DatabaseAway() | JournalUnavailable():
-            stop(f"the database does not answer ({error}); try again when the machine is less busy")
+            stop(f"{text_of(error.reason)} Try again when the machine is less busy.")
         case ReasonedError() | ValueError() | CannotServe():
             stop(error)
         case _:

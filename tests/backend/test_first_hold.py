@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sqlite3
 import subprocess
 import sys
@@ -85,6 +86,14 @@ async def test_a_database_that_does_not_answer_holds_nothing_up(settings: Settin
     nowhere = {"database_url": f"postgresql://127.0.0.1:{free_port()}/name"}
     assert await left_in_flight(settings.model_copy(update=nowhere)) is None
     assert await left_in_flight(Settings(data_dir=tmp_path / "elsewhere")) is None
+
+
+async def test_an_empty_postgresql_has_no_error_to_log(
+    tmp_path: Path, postgresql_url: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level(logging.INFO, "crossfix"):
+        assert await left_in_flight(Settings(data_dir=tmp_path, database_url=postgresql_url)) is None
+    assert not caplog.messages
 
 
 async def test_rows_of_another_form_are_left_to_the_journal(sqlite: Settings, tmp_path: Path) -> None:

@@ -48,6 +48,18 @@ def test_an_unknown_database_is_refused_with_the_two_that_work(url: str) -> None
         Settings(database_url=url)
 
 
+@pytest.mark.parametrize("port", ["nan", "70000", "0", "-1", "5432:x"])
+def test_a_databases_port_that_is_no_number_is_refused_and_not_shown(port: str) -> None:
+    with pytest.raises(ValueError, match=r"^--database: the database URL's port must be a number") as refused:
+        settings_of(database_url=f"postgresql://crossfix@db:{port}/missions")
+    assert f":{port}" not in str(refused.value)
+
+
+@pytest.mark.parametrize("place", ["db", "db:5432", "[::1]:5432", "u:p:w@db:5432", "u:a/b@db", "", "db:", ":5432"])
+def test_a_databases_port_is_read_where_one_is_named(place: str) -> None:
+    assert Settings(database_url=f"postgresql://{place}/missions?host=/run:5433").async_database_url.count(place)
+
+
 @pytest.mark.parametrize(
     ("url", "driven"),
     [

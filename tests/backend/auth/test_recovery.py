@@ -25,6 +25,7 @@ from backend.ports import JournalUnavailable
 from backend.reasons.access import CodeUnusable, PasswordWeak, SignInNeeded
 from backend.settings import AUDIT_FILE
 from backend.store.engine import make_engine, migrate
+from hardware.sim.autopilot.launch import free_port
 
 PASSWORD, NEW = "correct horse battery", "another horse battery"
 HERE = Visit("10.0.0.2", "laptop")
@@ -187,6 +188,14 @@ def test_the_command_in_the_wrong_folder_says_so(tmp_path: Path) -> None:
     assert found.exit_code != 0
     assert "--data-dir" in found.output
     assert not (tmp_path / "nowhere").exists()
+
+
+def test_the_command_says_once_that_the_database_does_not_answer() -> None:
+    nowhere = f"postgresql://crossfix@127.0.0.1:{free_port()}/missions"
+    told = CliRunner().invoke(app, ["recover", "Ada", "--database", nowhere])
+    assert told.exit_code == 2
+    assert told.output.lower().count("the database does not answer") == 1
+    assert told.output.rstrip().endswith("Is this the data directory of the server (--data-dir)?")
 
 
 def test_the_command_makes_no_database_where_there_is_none(tmp_path: Path) -> None:
