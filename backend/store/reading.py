@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Executable, exc, func, or_, select
+from sqlalchemy import ColumnElement, Executable, exc, func, or_, select, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.beside import MANY, beside
@@ -35,6 +35,10 @@ from backend.store.tables import events, missions, paths, sweeps, tracks
 from backend.store.upgrade import FIRST_FORM, OF_A_SWEEP, Imports, kinds_of_old
 
 log = logging.getLogger("crossfix.store")
+
+GOES_ON = 5.0
+"""Times as long as it is waited for: PostgreSQL does not notice that whoever asked has gone, and ends a question that
+is given up after this. By far longer than the wait, which does not count what this program itself stood still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +111,9 @@ class StoredFacts:
     def __init__(self, engine: AsyncEngine, timeout_s: float) -> None:
         self._engine = engine
         self._timeout_s = timeout_s
+        self._limit: Executable | None = None
+        if engine.dialect.name == "postgresql":
+            self._limit = text(f"SET LOCAL statement_timeout = {round(1e3 * GOES_ON * timeout_s)}")
 
     async def read(
         self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None, most: int | None = None
@@ -213,6 +220,8 @@ class StoredFacts:
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
             async with patience(self._timeout_s), self._engine.connect() as connection:
+                if self._limit is not None:
+                    await connection.execute(self._limit)
                 found = await connection.execute(query)
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
             raise unavailable(error, self._engine) from error
