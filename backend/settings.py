@@ -7,10 +7,12 @@ from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Any, Literal
-from urllib.parse import quote, urlsplit
+from urllib.parse import quote, unquote, urlsplit
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
+from sqlalchemy import URL, make_url
+from sqlalchemy.exc import ArgumentError
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 BUILT_PAGE, INSTALLED_PAGE = REPOSITORY / "frontend" / "dist", Path(__file__).resolve().parent / "page"
@@ -223,9 +225,13 @@ class Settings(BaseSettings):
 
     @property
     def shown_database(self) -> str:
-        """Its URL without user and password, for people and logs."""
-        scheme, _, rest = self.async_database_url.partition("://")
-        return f"{scheme}://{rest.rpartition('@')[2].partition('?')[0]}"  # the query may hold a password as well
+        """Its URL without user and password, for people and logs; nor its query, which may hold them as well."""
+        try:
+            url = make_url(self.async_database_url)
+        except (ArgumentError, ValueError):
+            return self.async_database_url.partition(":")[0]
+        shown = URL.create(url.drivername, host=url.host, port=url.port, database=url.database)
+        return unquote(shown.render_as_string())
 
     @property
     def spool_path(self) -> Path:
