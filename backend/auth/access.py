@@ -8,6 +8,7 @@ from __future__ import annotations
 import hmac
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -26,6 +27,7 @@ from backend.auth.recovery import take_recovery, use_up_recovery
 from backend.auth.registry import Invitation, Person, Session, digest, key_of, new_code, new_id, shown_key, typed
 from backend.auth.sessions import Entry, Sessions
 from backend.permissions import Role
+from backend.ports import JournalUnavailable
 from backend.reasons.access import (
     CodeUnusable,
     FirstAdminExists,
@@ -305,13 +307,19 @@ class Access:
 
     async def _settle(self) -> None:
         """What was not heard of in time may be stored all the same, as an account with its invitation, or a password:
-        it counts from now on. Raises JournalUnavailable."""
+        it counts from now on, and whom it shuts out or gives a new password is signed out. Raises JournalUnavailable.
+        """
         if not self._keeping.in_doubt or self._keeping.records is None:
             return
         stored = await self._keeping.records.load()
+        before = [(person, self.people.get(person.person_id)) for person in stored.people]
         self.people.load(stored.people)
         self.invitations.learn(stored.invitations)
         self._keeping.in_doubt = False
+        for now, known in before:
+            if known is not None and (not now.active or now.password_hash != known.password_hash):
+                with suppress(JournalUnavailable):  # they have ended, and the database hears of it
+                    await self.sessions.end_all(now.person_id)
 
     async def _settle_apart(self) -> None:
         """For whoever does not hold the registers. Raises JournalUnavailable."""

@@ -137,3 +137,35 @@ async def test_a_password_that_was_stored_unheard_is_the_one_from_then_on(
     with refusing(reasons.WrongNameOrPassword(), Denied):
         await access.sign_in("Ada", PASSWORD, Visit("a", ""))
     assert who(access, await access.sign_in("Ada", new, Visit("a", ""))) == "Ada"
+
+
+async def test_a_password_that_was_stored_unheard_ends_the_sessions_of_the_old_one(
+    access: Access, unheard: Callable[[], AbstractContextManager[object]], url: str, clocks: Clocks
+) -> None:
+    await with_admin(access)
+    thief = await access.sign_in("Ada", PASSWORD, Visit("b", ""))
+    person_id, new = access.people.by_name[0].person_id, "another good one 5"
+    with unheard(), pytest.raises(JournalUnavailable):
+        await access.change_password(person_id, PASSWORD, new, "a", None)
+    owner = await access.sign_in("Ada", new, Visit("a", ""))
+    assert (who(access, owner), who(access, thief)) == ("Ada", None)
+    another = await again(url, clocks, access)
+    assert (who(another, owner), who(another, thief)) == ("Ada", None)
+    await another.close()
+
+
+async def test_whoever_was_shut_out_unheard_is_signed_out_for_good(
+    access: Access, unheard: Callable[[], AbstractContextManager[object]]
+) -> None:
+    """Also from the live view, which looks at the session only, and when they are let in again."""
+    secret = await with_admin(access)
+    code, _ = await access.invitations.make("operator", False, 3600, access.people.by_name[0].person_id)
+    shut_out = await access.accept_invitation(code, "Olga", PASSWORD, Visit("a", ""))
+    found = access.signed_in(shut_out, "a")
+    assert found is not None
+    person_id = found[0].person or ""
+    with unheard(), pytest.raises(JournalUnavailable):
+        await access.change_person(person_id, "operator", admin=False, active=False)
+    await access.change_person(person_id, "operator", admin=False, active=True)
+    assert found[1].ended.is_set()
+    assert (who(access, shut_out), who(access, secret)) == (None, "Ada")
