@@ -311,7 +311,7 @@ class Access:
         """
         if not self._keeping.in_doubt or self._keeping.records is None:
             return
-        stored = await self._keeping.records.load()
+        stored = await self._keeping.records.load(settled=True)
         before = [(person, self.people.get(person.person_id)) for person in stored.people]
         self.people.load(stored.people)
         self.invitations.learn(stored.invitations)

@@ -50,10 +50,14 @@ class Records:
         self._engine = engine.execution_options(write=True)
         self._timeout_s = timeout_s
 
-    async def load(self) -> Stored:
-        """Everything."""
+    async def load(self, *, settled: bool = False) -> Stored:
+        """Everything. settled: with whatever a transaction changes that is still about to be stored, which is waited
+        for; SQLite lets nobody write beside it anyway."""
 
         async def read(connection: AsyncConnection) -> Stored:
+            if settled and connection.dialect.name == "postgresql":
+                await connection.exec_driver_sql(f"SET LOCAL lock_timeout = {round(1000 * self._timeout_s)}")
+                await connection.exec_driver_sql("LOCK TABLE people, invitations IN SHARE MODE")
             return Stored(
                 await _all(connection, Person),
                 await _all(connection, Session),

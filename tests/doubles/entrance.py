@@ -27,9 +27,9 @@ class Clocks:
         self.steady_s += seconds
 
 
-def opened(url: str, clocks: Clocks, *, expected: bool = True) -> Access:
+def opened(url: str, clocks: Clocks, *, expected: bool = True, timeout_s: float = 2.0) -> Access:
     return Access(
-        Records(make_engine(url, 2.0), 2.0),
+        Records(make_engine(url, timeout_s), timeout_s),
         AuditLog(None, lambda: clocks.wall_s),
         people_expected=expected,
         payload_tokens=("a configured token of a payload",),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from uuid import uuid4
 
 import pytest
@@ -11,7 +12,7 @@ from refusals import refusing
 
 from backend.auth.access import Visit
 from backend.auth.keeping import Denied
-from backend.ports import FactRefused
+from backend.ports import FactRefused, JournalUnavailable
 from backend.reasons.access import CodeUnusable
 from backend.store import engine
 from backend.store.engine import migrate
@@ -39,3 +40,38 @@ async def test_a_name_that_an_older_database_lacks_letters_for_is_refused(
     with refusing(CodeUnusable("used"), Denied):
         await access.accept_invitation(code, "Ольга", PASSWORD, Visit("a", ""))
     await access.close()
+
+
+SLOW = """
+CREATE FUNCTION slow() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    BEGIN PERFORM pg_sleep(1); EXCEPTION WHEN query_canceled THEN PERFORM pg_sleep(1); END;
+    RETURN NULL;
+END $$"""
+SLOWLY = """
+CREATE CONSTRAINT TRIGGER slowly AFTER UPDATE ON people
+DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION slow()"""
+
+
+async def test_what_postgresql_is_still_storing_counts_before_anybody_enters(
+    postgresql_url: str, clocks: Clocks
+) -> None:
+    """As on a disk that stalls in the middle of a commit."""
+    url, new = postgresql_url.replace("postgresql:", "postgresql+asyncpg:"), "another good one 5"
+    await migrate(url)
+    access, hasty = opened(url, clocks), opened(url, clocks, timeout_s=0.5)
+    await with_admin(access)
+    await hasty.load()
+    database = engine.make_engine(url, 2.0)
+    async with database.begin() as connection:
+        await connection.exec_driver_sql(SLOW)
+        await connection.exec_driver_sql(SLOWLY)
+    with pytest.raises(JournalUnavailable):
+        await hasty.change_password(hasty.people.by_name[0].person_id, PASSWORD, new, "a", None)
+    with suppress(JournalUnavailable):
+        await hasty.sign_in("Ada", PASSWORD, Visit("a", ""))
+    await asyncio.sleep(2.0)
+    assert await hasty.sign_in("Ada", new, Visit("a", ""))
+    for one in (access, hasty):
+        await one.close()
+    await engine.dispose(database)
