@@ -105,7 +105,8 @@ def restarted(step: CraftStep, given: Restarted) -> None:
         because = "ordered_before" if craft.comes_down_as_ordered else "server_away"
         if heard.who == "failsafe" or not step.on_ground:
             tell_failsafe(step, because)
-        step.go("hold", flight.FailsafeFlies(_named(heard) or because))
+        named = flight.FailsafeFlies(_named(heard) or because)
+        step.go("hold", ORDERED_BEFORE if craft.comes_down_as_ordered else named)
     else:
         insist(step, "hold")
         step.go("hold", flight.BackAfterRestart())

@@ -188,3 +188,14 @@ def test_a_landing_that_a_failsafe_takes_over_keeps_its_own_reason() -> None:
     for authority in (PERHAPS_PILOT, NAMED_FAILSAFE):
         walk.give(inputs.AuthorityHeard(authority))
     assert (walk.craft.phase, walk.craft.phase_reason) == ("landing", Ordered("land", "anna"))
+
+
+def test_a_way_home_ordered_before_a_restart_ends_the_mission_though_a_named_failsafe_flies_it() -> None:
+    walk = CraftWalk().to("flying")
+    walk.order(commands.Return())
+    walk.give(inputs.AuthorityHeard(NAMED_FAILSAFE))
+    walk.fold(ServerRestarted())
+    assert not sent(walk.give(inputs.Restarted(NAMED_FAILSAFE)))
+    assert (walk.topics, walk.last_alert.reason) == (["vehicle"], FailsafeFlies("battery"))
+    walk.give(inputs.Landed())
+    assert (walk.craft.phase, walk.craft.engaged) == ("ground", False)
