@@ -328,6 +328,8 @@ def _heard_again(step: CraftStep) -> None:
     craft = step.craft
     if craft.phase in HOMEWARD:
         clear_alerts(step, "failure")
+        if step.comes_by_itself:
+            tell_failsafe(step, "link_lost")
         bring_down(step, "land" if craft.phase == "landing" else "return")
     elif craft.phase == "hold" and step.comes_by_itself:
         tell_failsafe(step, "link_lost")
@@ -369,8 +371,8 @@ def _on_the_ground(step: CraftStep) -> None:
         reason = flight.Landed("automatic")
         step.do(CancelWork())
         step.go("hold", reason)
+    clear_failsafe(step)
     if not step.on_ground:
-        clear_failsafe(step)
         step.do(CancelTimer("order"))
         clear_alerts(step, "order")
         alert(step, "ground", "warning", reason)

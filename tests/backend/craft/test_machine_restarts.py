@@ -199,3 +199,29 @@ def test_a_way_home_ordered_before_a_restart_ends_the_mission_though_a_named_fai
     assert (walk.topics, walk.last_alert.reason) == (["vehicle"], FailsafeFlies("battery"))
     walk.give(inputs.Landed())
     assert (walk.craft.phase, walk.craft.engaged) == ("ground", False)
+
+
+@pytest.mark.parametrize("heard", [NAMED_FAILSAFE, STOPPED])
+def test_on_the_way_home_too_it_says_what_the_failsafe_does_after_a_lost_link(heard: Authority) -> None:
+    walk = CraftWalk().to("flying")
+    walk.order(commands.Return())
+    walk.give(inputs.AuthorityHeard(heard))
+    walk.give(inputs.LinkDown("vehicle", LINK_LOST))
+    assert not sent(walk.give(inputs.LinkUp("vehicle", 5.0)))
+    reason = FailsafeStopped("HOLD") if heard.given_back else FailsafeFlies("battery")
+    assert (walk.topics, walk.last_alert.reason) == (["vehicle"], reason)
+
+
+@pytest.mark.parametrize("again", ["link", "server"])
+def test_of_a_vehicle_that_stands_armed_no_failsafe_is_said_to_fly_it_for_good(again: str) -> None:
+    walk = CraftWalk().to("flying")
+    walk.give(inputs.AuthorityHeard(FAILSAFE))
+    walk.give(inputs.Landed())
+    if again == "link":
+        walk.give(inputs.LinkDown("vehicle", LINK_LOST))
+        walk.give(inputs.LinkUp("vehicle", 5.0))
+    else:
+        walk.fold(ServerRestarted())
+        walk.give(inputs.Restarted(FAILSAFE))
+    walk.give(inputs.Landed())
+    assert walk.topics == ["ground"]
