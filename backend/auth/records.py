@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from sqlalchemy import ColumnElement, Table, delete, insert, select, update
 from sqlalchemy.exc import DBAPIError, IntegrityError
+from sqlalchemy.exc import TimeoutError as NoneFree
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.auth.registry import Invitation, MachineToken, Person, Session
@@ -92,7 +93,7 @@ class Records:
         try:
             async with patience(self._timeout_s), self._engine.begin() as connection:
                 return await work(connection)
-        except (DBAPIError, OSError, TimeoutError) as error:
+        except (DBAPIError, NoneFree, OSError, TimeoutError) as error:
             if refuses(error):
                 kind = RowThere if isinstance(error, IntegrityError) else FactRefused
                 raise kind(FactUnfit("database", why(error))) from error

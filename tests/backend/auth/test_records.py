@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from contextlib import suppress
+from contextlib import AsyncExitStack, suppress
 from uuid import uuid4
 
 import pytest
@@ -12,6 +12,7 @@ from refusals import refusing
 
 from backend.auth.access import Visit
 from backend.auth.keeping import Denied
+from backend.auth.records import Records
 from backend.ports import FactRefused, JournalUnavailable
 from backend.reasons.access import CodeUnusable
 from backend.store import engine
@@ -74,4 +75,16 @@ async def test_what_postgresql_is_still_storing_counts_before_anybody_enters(
     assert await hasty.sign_in("Ada", new, Visit("a", ""))
     for one in (access, hasty):
         await one.close()
+    await engine.dispose(database)
+
+
+async def test_that_all_connections_are_taken_is_a_silence_of_the_database(postgresql_url: str) -> None:
+    url = postgresql_url.replace("postgresql:", "postgresql+asyncpg:")
+    await migrate(url)
+    database = engine.make_engine(url, 0.5)
+    async with AsyncExitStack() as taken:
+        for _ in range(15):
+            await taken.enter_async_context(database.connect())
+        with pytest.raises(JournalUnavailable):
+            await Records(database, 0.5).load()
     await engine.dispose(database)
