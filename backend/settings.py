@@ -11,8 +11,6 @@ from urllib.parse import quote, unquote, urlsplit
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
-from sqlalchemy import URL, make_url
-from sqlalchemy.exc import ArgumentError
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 BUILT_PAGE, INSTALLED_PAGE = REPOSITORY / "frontend" / "dist", Path(__file__).resolve().parent / "page"
@@ -226,6 +224,9 @@ class Settings(BaseSettings):
     @property
     def shown_database(self) -> str:
         """Its URL without user and password, for people and logs; nor its query, which may hold them as well."""
+        from sqlalchemy import URL, make_url  # a sixth of a second, which commands without a database are spared
+        from sqlalchemy.exc import ArgumentError
+
         try:
             url = make_url(self.async_database_url)
         except (ArgumentError, ValueError):

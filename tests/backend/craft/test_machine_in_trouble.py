@@ -371,7 +371,7 @@ def test_alerts_of_two_craft_are_told_apart_and_a_later_one_on_a_topic_takes_the
     assert not ids[0] & ids[1]
 
 
-@pytest.mark.parametrize("phase", HOMEWARD)
+@pytest.mark.parametrize("phase", sorted(HOMEWARD))
 def test_a_failsafe_on_an_ordered_way_home_ends_alike_whichever_of_its_mode_and_its_name_is_heard_first(
     phase: Phase,
 ) -> None:

@@ -168,7 +168,7 @@ def test_after_a_restart_a_vehicle_that_its_failsafe_had_landed_before_is_said_t
 
 
 @pytest.mark.parametrize("heard", [(NAMED_FAILSAFE,), (PERHAPS_PILOT, NAMED_FAILSAFE)])
-@pytest.mark.parametrize("phase", HOMEWARD)
+@pytest.mark.parametrize("phase", sorted(HOMEWARD))
 def test_a_way_home_from_before_a_restart_ends_as_ordered_whichever_word_of_a_failsafe_is_first(
     phase: Phase, heard: tuple[Authority, ...]
 ) -> None:
