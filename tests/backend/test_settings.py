@@ -123,7 +123,7 @@ def test_the_shown_database_holds_no_password(url: str) -> None:
 
 
 def test_of_a_database_url_that_cannot_be_read_its_kind_is_shown() -> None:
-    assert Settings(database_url="postgresql://app:hush@h:five/x").shown_database == "postgresql+asyncpg"
+    assert Settings(database_url="postgresql:app:hush@h/x").shown_database == "postgresql+asyncpg"
 
 
 def test_the_shown_database_names_the_whole_file() -> None:
