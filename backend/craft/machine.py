@@ -325,15 +325,13 @@ def _link_up(step: CraftStep, given: LinkUp) -> None:
 
 def _heard_again(step: CraftStep) -> None:
     """What was ordered last is ordered again: the vehicle may not have heard it."""
-    craft = step.craft
-    if craft.phase in HOMEWARD:
-        clear_alerts(step, "failure")
-        if step.comes_by_itself:
-            tell_failsafe(step, "link_lost")
-        bring_down(step, "land" if craft.phase == "landing" else "return")
-    elif craft.phase == "hold" and step.comes_by_itself:
+    phase = step.craft.phase
+    if step.comes_by_itself and phase in HOMEWARD | {"hold"}:
         tell_failsafe(step, "link_lost")
-    elif craft.phase == "hold":
+    if phase in HOMEWARD:
+        clear_alerts(step, "failure")
+        bring_down(step, "land" if phase == "landing" else "return")
+    elif phase == "hold" and not step.comes_by_itself:
         insist(step, "hold")
 
 
