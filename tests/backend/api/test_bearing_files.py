@@ -172,12 +172,20 @@ async def test_what_another_station_heard_at_the_same_time_is_another_bearing(cl
 
 async def test_bearings_of_another_time_place_or_direction_are_others(client, services):
     mission_id = await draft(client)
+    told = "1,0,70.0,1,50.6,7.2,100,0,0,1700000000"
+    changes = (("1700000000", "1700000002"), ("50.6,", "50.6002,"), ("70.0", "70.2"), ("70.0", "70.05"))
+    for text in (told, *(told.replace(*change) for change in changes)):
+        assert (await bring(client, mission_id, text)).status_code == 201
+    assert await known_of(services, mission_id) == [[], [], [], [], [1]]
+
+
+async def test_of_a_stations_two_logs_one_bearing_a_minute_and_place_counts_as_of_one(client, services):
+    mission_id = await draft(client)
     first = kraken().splitlines()[0]
     changes = (("1700000000000", "1700000061500"), ("50.6,", "50.6002,"), ("350.0", "349.8"))
-    others = [first.replace(*change) for change in changes]
-    for line in (first, *others):
+    for line in (first, *(first.replace(*change) for change in changes)):
         assert (await bring(client, mission_id, line)).status_code == 201
-    assert await known_of(services, mission_id) == [[], [], [], []]
+    assert await known_of(services, mission_id) == [[], [], [], [1]]
 
 
 async def test_a_file_is_called_what_can_be_shown_of_its_name(client, services):
