@@ -316,10 +316,10 @@ class Access:
         self.people.load(stored.people)
         self.invitations.learn(stored.invitations)
         self._keeping.in_doubt = False
-        for now, known in before:
-            if known is not None and (not now.active or now.password_hash != known.password_hash):
+        for person, known in before:
+            if known is not None and (not person.active or person.password_hash != known.password_hash):
                 with suppress(JournalUnavailable):  # they have ended, and the database hears of it
-                    await self.sessions.end_all(now.person_id)
+                    await self.sessions.end_all(person.person_id)
 
     async def _settle_apart(self) -> None:
         """For whoever does not hold the registers. Raises JournalUnavailable."""
